@@ -1,0 +1,136 @@
+/* solver.h - the contract of a pressure solver: one const table per method, and what the runner offers to it. */
+#ifndef SOLVER_H
+#define SOLVER_H
+#include "base/param.h"
+#include "base/status.h"
+#include "neighbours/pairs.h"
+#include "particles/particles.h"
+#include "sph/sweep.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SOLVER_ABI 1
+
+/* What a scene may ask and a solver can do. The text completes "the solver cannot ..." in the compatibility table. */
+#define ABILITY_LIST(A)                                                       \
+  A(2D, "run in two dimensions")                                              \
+  A(3D, "run in three dimensions")                                            \
+  A(WALLS, "handle wall particles")                                           \
+  A(FREE_SURFACE, "handle a free surface")                                    \
+  A(GRAVITY, "apply a body force")                                            \
+  A(XSPH, "apply XSPH viscosity")                                             \
+  A(PERIODIC, "run in a periodic domain")                                     \
+  A(PROJECT, "project velocities without moving the particles")
+#define A(name, text) ABILITY_##name,
+enum ability { ABILITY_LIST(A) NUM_ABILITIES };
+#undef A
+#define CAN(name) (1u << ABILITY_##name)
+
+struct run; /* owns particles, pair lists, clocks, results; opaque to solvers */
+
+/* What the runner keeps up to date at the head of every solver's state. */
+#define VIEW                                                                                  \
+  struct particles p;                                                                         \
+  struct pairs nb;    /* fluid -> fluid and wall, at the positions of the last sort */        \
+  real dt;            /* time step [s] */                                                     \
+  real time;          /* time at the start of the step [s] */                                 \
+  real rho0;          /* rest density [kg/m^3] */                                             \
+  real dx;            /* particle spacing [m] */                                              \
+  real mass;          /* of a particle in a full lattice of density rho0 [kg, 2-D: kg/m] */   \
+  real xsph;          /* XSPH coefficient per step [1] */                                     \
+  vec gravity         /* body force [m/s^2] */
+struct view {
+  VIEW;
+};
+
+#define FIELD_MEMBER(type, name, where, life, unit, meaning) type *name;
+#define FIELD_ROW(type, name, where, life, unit, meaning)                       \
+  {#name, unit, meaning, where, life, FIELD_COMPONENTS(type), sizeof(type), offsetof(state, name)},
+#define FIELD_COMPONENTS(type) (FIELD_IS_##type ? (int)(sizeof(type) / sizeof(real)) : 0)
+#define FIELD_IS_real 1
+#define FIELD_IS_vec 1
+#define FIELD_IS_int 0
+#define FIELD_TABLE(LIST) {LIST(FIELD_ROW)}
+
+/* The slots are in this order in every table (C++20 wants designated initialisers so). */
+struct solver {
+  int abi;             /* REQUIRED: SOLVER_ABI */
+  const char *name;    /* REQUIRED: as users type it, lower case with hyphens */
+  const char *about;   /* REQUIRED: one line */
+  const char *paper;   /* REQUIRED: citation */
+  const char *doi;     /* REQUIRED */
+  const char *differences; /* REQUIRED: from the paper, one per line; "" if none */
+  unsigned needs;      /* REQUIRED: HAS(..) of the public fields it reads or writes */
+  unsigned can;        /* REQUIRED: CAN(..) */
+  const struct param *params;
+  int num_params;
+  const struct field *fields; /* private fields */
+  int num_fields;
+  size_t state_size;   /* REQUIRED: sizeof(state); a state begins with VIEW */
+  /* After the particles were placed and before the first step. Optional. */
+  status (*start)(struct run *run, void *state);
+  /* Advance x and v from `time` to time + dt. REQUIRED. */
+  status (*step)(struct run *run, void *state);
+  /* Replace v by its projection at fixed x, and set p. REQUIRED with CAN(PROJECT). */
+  status (*project)(struct run *run, void *state);
+  /* The largest time step that the method allows now [s]. Optional. */
+  double (*max_dt)(const void *state);
+  /* Release what start took beyond fields and pair lists. Optional. */
+  void (*stop)(struct run *run, void *state);
+};
+
+/* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers valid --- */
+
+/* x += dt v for the fluid particles. */
+status run_move(struct run *run);
+
+/* Sort the fluid by cell, list its neighbours into state->nb. With want_wall_rows the list has rows for wall particles too. */
+status run_neighbours(struct run *run);
+
+/* rho_i = sum_j m_j W_ij over fluid and walls (state->p.rho). */
+status run_density(struct run *run);
+
+/* v += dt gravity, then what the scene asks of viscosity (XSPH: v_i += xsph sum_j V_ij (v_j - v_i) W_ij over the fluid). */
+status run_forces(struct run *run);
+/* The XSPH part alone (for methods that apply it after the correction). Nothing where the scene asks for none. */
+status run_viscosity(struct run *run);
+
+/* Record that an iterative solve named `what` ("pressure", "divergence") took `count` iterations and left the relative
+ * residual; `converged` 0 if it hit its cap. */
+void run_iterations(struct run *run, const char *what, int count, double residual, int converged);
+
+/* Stop the run as a result: it diverged, for this reason. Returns ERR_RUN for the solver to pass on. */
+status run_diverged(struct run *run, const char *format, ...);
+
+/* Give the virtual set n particles: the private fields declared VIRTUAL hold n (contents undefined, but KEPT ones keep
+ * their first min(n, old n) entries). */
+status run_virtual(struct run *run, int n);
+
+/* A pair list of the solver's own, in `list`, valid until the next call with the same slot. */
+enum pair_set { SET_FLUID, SET_ALL, SET_VIRTUAL };
+struct pair_request {
+  int slot;               /* which of the run's MAX_PAIR_LISTS lists to overwrite */
+  int from, to;           /* enum pair_set */
+  const vec *virtual_x;   /* positions of the virtual set [n] */
+  int num_virtual;
+};
+enum { MAX_PAIR_LISTS = 6 };
+status run_pairs(struct run *run, struct pair_request request, struct pairs *list);
+
+/* An array of reals with one per slot of a pair list (coefficients), reused from step to step; NULL on no memory. */
+real *run_slots(struct run *run, int slot, int slots);
+
+/* Random bits for this step: a counter-based stream of the run's seed; the same on CPU and GPU. in [0, 1) */
+double run_random(const struct run *run, unsigned long long counter);
+
+long run_step_number(const struct run *run);
+
+#define SOLVER(name) extern const struct solver solver_##name;
+#include "../solvers/solvers.def"
+#undef SOLVER
+
+#ifdef __cplusplus
+}
+#endif
+#endif
