@@ -3,7 +3,7 @@
 #define SOLVER_H
 #include "base/param.h"
 #include "base/status.h"
-#include "neighbours/pairs.h"
+#include "neighbours/neighbours.h"
 #include "particles/particles.h"
 #include "sph/sweep.h"
 #ifdef __cplusplus
@@ -21,7 +21,8 @@ extern "C" {
   A(GRAVITY, "apply a body force")                                            \
   A(XSPH, "apply XSPH viscosity")                                             \
   A(PERIODIC, "run in a periodic domain")                                     \
-  A(PROJECT, "project velocities without moving the particles")
+  A(PROJECT, "project velocities without moving the particles")               \
+  A(MOMENTUM, "keep linear momentum to rounding")
 #define A(name, text) ABILITY_##name,
 enum ability { ABILITY_LIST(A) NUM_ABILITIES };
 #undef A
@@ -33,6 +34,8 @@ struct run; /* owns particles, pair lists, clocks, results; opaque to solvers */
 #define VIEW                                                                                  \
   struct particles p;                                                                         \
   struct pairs nb;    /* fluid -> fluid and wall, at the positions of the last sort */        \
+  struct grid grid;   /* of the last sort */                                                  \
+  const int *cells;   /* first fluid particle of each cell of the grid [num_cells + 1] */     \
   real dt;            /* time step [s] */                                                     \
   real time;          /* time at the start of the step [s] */                                 \
   real rho0;          /* rest density [kg/m^3] */                                             \
@@ -76,6 +79,8 @@ struct solver {
   status (*project)(struct run *run, void *state);
   /* The largest time step that the method allows now [s]. Optional. */
   double (*max_dt)(const void *state);
+  /* Is this private field needed with the parameters in state? Optional: all are. */
+  int (*uses)(const void *state, const char *field);
   /* Release what start took beyond fields and pair lists. Optional. */
   void (*stop)(struct run *run, void *state);
 };
@@ -85,10 +90,11 @@ struct solver {
 /* x += dt v for the fluid particles. */
 status run_move(struct run *run);
 
-/* Sort the fluid by cell, list its neighbours into state->nb. With want_wall_rows the list has rows for wall particles too. */
+/* Sort the fluid by cell and list its neighbours into state->nb. */
 status run_neighbours(struct run *run);
 
-/* rho_i = sum_j m_j W_ij over fluid and walls (state->p.rho). */
+/* rho_i = sum_j m_j W_ij over fluid and walls (state->p.rho), and the fluid's volumes m/rho where they are needed (p.V); once
+ * per step and sort. */
 status run_density(struct run *run);
 
 /* v += dt gravity, then what the scene asks of viscosity (XSPH: v_i += xsph sum_j V_ij (v_j - v_i) W_ij over the fluid). */
@@ -103,23 +109,29 @@ void run_iterations(struct run *run, const char *what, int count, double residua
 /* Stop the run as a result: it diverged, for this reason. Returns ERR_RUN for the solver to pass on. */
 status run_diverged(struct run *run, const char *format, ...);
 
-/* Give the virtual set n particles: the private fields declared VIRTUAL hold n (contents undefined, but KEPT ones keep
- * their first min(n, old n) entries). */
+/* --- a second set of particles, for solvers that declare VIRTUAL fields; one of them, a KEPT vec named X, is its position */
+
+/* Give the virtual set n particles: its fields hold n; KEPT ones keep their first min(n, old n) entries. */
 status run_virtual(struct run *run, int n);
 
-/* A pair list of the solver's own, in `list`, valid until the next call with the same slot. */
-enum pair_set { SET_FLUID, SET_ALL, SET_VIRTUAL };
-struct pair_request {
-  int slot;               /* which of the run's MAX_PAIR_LISTS lists to overwrite */
-  int from, to;           /* enum pair_set */
-  const vec *virtual_x;   /* positions of the virtual set [n] */
-  int num_virtual;
-};
-enum { MAX_PAIR_LISTS = 6 };
-status run_pairs(struct run *run, struct pair_request request, struct pairs *list);
+/* Sort the virtual set by the cells of the last run_neighbours: permutes its KEPT fields. */
+status run_sort_virtual(struct run *run);
 
-/* An array of reals with one per slot of a pair list (coefficients), reused from step to step; NULL on no memory. */
-real *run_slots(struct run *run, int slot, int slots);
+/* A pair list of the solver's own, valid until the same slot is built again. SET_ALL is fluid and walls. The virtual set must
+ * be sorted. `slot` is 0 .. MAX_PAIR_LISTS-1. */
+enum pair_set { SET_FLUID, SET_ALL, SET_VIRTUAL };
+enum { MAX_PAIR_LISTS = 4 };
+status run_pairs(struct run *run, int slot, enum pair_set from, enum pair_set to, struct pairs *list);
+
+/* Rows of the walls for state->nb, which run_neighbours leaves without: [n, n_all). */
+status run_wall_rows(struct run *run);
+
+/* n keys to be filled by a stage; then sorted with repetitions dropped: the number left, < 0 on no memory. */
+unsigned long long *run_keys(struct run *run, int n);
+int run_unique_keys(struct run *run, unsigned long long *keys, int n);
+
+/* Room for one real per slot of that pair list (coefficients), reused from step to step; NULL on no memory. */
+real *run_coefficients(struct run *run, int slot, int num_slots);
 
 /* Random bits for this step: a counter-based stream of the run's seed; the same on CPU and GPU. in [0, 1) */
 double run_random(const struct run *run, unsigned long long counter);

@@ -33,6 +33,7 @@ STAGE real of(const real *a, const packet &ij) { return a[*ij.j]; }
 STAGE vec of(const vec *a, const packet &ij) { return a[*ij.j]; }
 STAGE vec difference(vec a, vec b) { return sub(a, b); }
 STAGE real only(const packet &ij, real a) { (void)ij; return a; }
+STAGE real only_below(const packet &ij, int n, real a) { return *ij.j < n ? a : 0; }
 STAGE real nearest_image(real x, real period) { return x - period * rint(x / period); }
 STAGE void keep(real *a, const packet &ij, real value) { a[ij.k] = value; }
 STAGE real kept(const real *a, const packet &ij) { return a[ij.k]; }
@@ -87,6 +88,14 @@ STAGE vecs difference(vec a, vecs b)
 }
 /* a in the lanes that hold a pair, 0 in the others */
 STAGE lanes only(struct packet ij, lanes a) { return mask_lanes(LANE_NUMBERS < ij.left, a); }
+/* a in the lanes whose neighbour's index is below n (n = p.n: fluid, not wall), 0 in the others */
+STAGE lanes only_below(struct packet ij, int n, lanes a)
+{
+#define ONE(l) ij.j[l]
+  const lane_mask j = EACH_INDEX(ONE);
+#undef ONE
+  return mask_lanes(j < n, a);
+}
 
 STAGE lanes nearest_image(lanes x, real period)
 {

@@ -20,8 +20,8 @@ enum field_number {
 };
 #define HAS(name) (1u << FIELD_##name)
 
-/* Where a field lives and how long (see fields.def); VIRTUAL: a solver's own second set of particles;
- * SLOTS: one real per slot of a pair list that the solver sizes itself. */
+/* Where a field lives and how long (see fields.def); VIRTUAL: a solver's own second set of particles,
+ * sized by the solver. */
 enum field_where { FLUID, ALL, WALL, VIRTUAL, NUM_WHERE };
 enum field_life { KEPT, STEP };
 

@@ -24,6 +24,7 @@ STAGE real root(real a) { return sqrt(a); }
 STAGE real at_least(real a, real low) { return a > low ? a : low; }
 STAGE real at_most(real a, real high) { return a < high ? a : high; }
 STAGE real positive(real condition, real a) { return condition > 0 ? a : 0; }
+STAGE real or_else(real a, real b) { return a > 0 ? a : b; }
 
 #else
 
@@ -41,10 +42,12 @@ typedef struct {
 typedef int lane_mask __attribute__((vector_size(LANES_BYTES)));
 #define LANE_NUMBERS ((lane_mask){0, 1, 2, 3, 4, 5, 6, 7})
 #define EACH_LANE(E) ((lanes){E(0), E(1), E(2), E(3), E(4), E(5), E(6), E(7)})
+#define EACH_INDEX(E) ((lane_mask){E(0), E(1), E(2), E(3), E(4), E(5), E(6), E(7)})
 #else
 typedef long long lane_mask __attribute__((vector_size(LANES_BYTES)));
 #define LANE_NUMBERS ((lane_mask){0, 1, 2, 3})
 #define EACH_LANE(E) ((lanes){E(0), E(1), E(2), E(3)})
+#define EACH_INDEX(E) ((lane_mask){E(0), E(1), E(2), E(3)})
 #endif
 
 STAGE lanes mask_lanes(lane_mask mask, lanes a) { return (lanes)(mask & (lane_mask)a); }
@@ -60,6 +63,13 @@ STAGE lanes at_most(lanes a, real high)
 }
 /* a where condition > 0, else 0 */
 STAGE lanes positive(lanes condition, lanes a) { return mask_lanes(condition > 0, a); }
+
+/* a where a > 0, else b */
+STAGE lanes or_else(lanes a, real b)
+{
+  const lane_mask more = a > 0;
+  return (lanes)((more & (lane_mask)a) | (~more & (lane_mask)(b + NO_LANES)));
+}
 
 STAGE lanes root(lanes a)
 {

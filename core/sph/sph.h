@@ -5,6 +5,7 @@
 #include <cmath>
 #else
 #include <tgmath.h> /* sqrt(real) is sqrtf in the f32 build */
+#undef I /* of complex.h; here I is a virtual particle */
 #endif
 #include <stddef.h>
 #ifndef DIM

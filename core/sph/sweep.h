@@ -7,6 +7,7 @@
 #include "sph.h"
 
 #define REDUCE_CHUNK 1024 /* elements that are summed in order; chunks are then summed in order */
+#define SWEEP_BLOCK 32    /* particles in a row; backwards is block by block, so that both ways run the same code */
 #define SWEEP_GRAIN 512   /* below this many particles a parallel loop costs more than it saves */
 
 #ifdef __CUDACC__
@@ -26,8 +27,13 @@ double *reduce_scratch(int chunks);
     static struct stage_clock clock_ = {#stage, 0, 0, 0, 0, 0};                           \
     const double begun_ = stage_begin(&clock_);                                           \
     const int n_ = (count), back_ = sweep_reversed;                                       \
+    const int blocks_ = (n_ + SWEEP_BLOCK - 1) / SWEEP_BLOCK;                             \
     _Pragma("omp parallel for schedule(static) if (n_ > SWEEP_GRAIN)")                    \
-    for (int k_ = 0; k_ < n_; k_++) stage(s, back_ ? n_ - 1 - k_ : k_);                   \
+    for (int b_ = 0; b_ < blocks_; b_++) {                                                \
+      const int from_ = (back_ ? blocks_ - 1 - b_ : b_) * SWEEP_BLOCK;                    \
+      const int to_ = from_ + SWEEP_BLOCK < n_ ? from_ + SWEEP_BLOCK : n_;                \
+      for (int k_ = from_; k_ < to_; k_++) stage(s, k_);                                  \
+    }                                                                                     \
     stage_end(&clock_, begun_, n_);                                                       \
   } while (0)
 

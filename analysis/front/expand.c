@@ -1,0 +1,116 @@
+/* From a recipe to the runs that it needs. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "figure.h"
+#include "process.h"
+#include "variants.h"
+
+status solver_names(struct names *names)
+{
+  const struct variant wanted = {"openmp", "f64", 2};
+  struct variant any;
+  struct path executable;
+  *names = (struct names){NULL, 0};
+  TRY(variant_any(&wanted, &any));
+  TRY(variant_executable(&any, &executable));
+  const char *const argv[] = {executable.text, "list", "solvers", "--json", NULL};
+  char *text = process_output(argv);
+  json_t *list = text ? json_loads(text, 0, NULL) : NULL, *row;
+  size_t k;
+  free(text);
+  if (list) names->name = calloc(json_array_size(list) + 1, sizeof *names->name);
+  json_array_foreach(list, k, row)
+  {
+    const char *name = json_string_value(json_object_get(row, "name"));
+    if (names->name && name) names->name[names->n++] = strdup(name);
+  }
+  json_decref(list);
+  return names->n ? OK : status_set(ERR_IO, "'%s' lists no solvers", executable.text);
+}
+
+/* Number of a solver, from 1; 0: unknown. */
+static int number_of(const struct names *solvers, const char *name)
+{
+  for (int k = 0; k < solvers->n; k++)
+    if (strcmp(solvers->name[k], name) == 0) return k + 1;
+  return 0;
+}
+
+static struct run_request request_of(const struct recipe_runs *runs)
+{
+  return (struct run_request){.scene = runs->scene, .dim = runs->dim,
+                              .precision = runs->precision, .dt = runs->dt,
+                              .t_end = runs->t_end, .spacing = runs->spacing,
+                              .frames = runs->frames, .set = runs->set,
+                              .num_sets = (int)runs->num_set,
+                              .vary = runs->vary ? runs->vary->name : NULL};
+}
+
+static status add_case(struct figure *f, const struct recipe_runs *runs, struct figure_case one,
+                       struct queue *queue)
+{
+  struct run_request request = request_of(runs);
+  request.solver = one.solver;
+  request.value = one.value;
+  struct figure_case *more = realloc(f->cases, (size_t)(f->n + 1) * sizeof *more);
+  if (!more) return status_set(ERR_MEMORY, "out of memory");
+  f->cases = more;
+  one.curve = runs->label ? text_make("%s %s", one.solver, runs->label) : strdup(one.solver);
+  one.label = one.value ? text_make("%s, %s %s", one.curve, runs->vary->name, one.value)
+                        : text_make("%s", one.curve);
+  f->cases[f->n++] = one;
+  if (!one.curve || !one.label) return status_set(ERR_MEMORY, "out of memory");
+  return queue_add(queue, &request, &f->cases[f->n - 1].run);
+}
+
+/* All values of the varied parameter, or the one run, with one solver. */
+static status add_group(struct figure *f, const struct recipe_runs *runs, const char *solver,
+                        const struct names *solvers, struct queue *queue)
+{
+  struct figure_case one = {.solver = solver, .colour = number_of(solvers, solver),
+                            .group = f->num_groups++};
+  if (!one.colour) {
+    const char *near = nearest_name(solver, (const char *const *)solvers->name, solvers->n);
+    return user_error("%s/recipe.yaml: runs: solvers: '%s' is unknown; %s%s%s", f->folder.text,
+                      solver, near ? "the nearest known name is '" : "see 'sphbench list solvers",
+                      near ? near : "", "'");
+  }
+  if (!runs->vary) return add_case(f, runs, one, queue);
+  for (unsigned k = 0; k < runs->vary->num_values; k++) {
+    one.value = runs->vary->values[k];
+    TRY(add_case(f, runs, one, queue));
+  }
+  return OK;
+}
+
+static status expand(struct figure *f, const struct names *solvers, struct queue *queue)
+{
+  for (unsigned k = 0; k < f->recipe->num_runs; k++) {
+    const struct recipe_runs *runs = &f->recipe->runs[k];
+    const unsigned n = runs->num_solvers ? runs->num_solvers : (unsigned)solvers->n;
+    char **names = runs->num_solvers ? runs->solvers : solvers->name;
+    for (unsigned s = 0; s < n; s++) TRY(add_group(f, runs, names[s], solvers, queue));
+  }
+  return OK;
+}
+
+status figure_prepare(struct figure *figure, const char *name, const struct names *solvers,
+                      struct queue *queue)
+{
+  *figure = (struct figure){.folder = recipe_folder(name)};
+  TRY(recipe_read(name, &figure->recipe));
+  return expand(figure, solvers, queue);
+}
+
+void figure_free(struct figure *figure)
+{
+  for (int k = 0; k < figure->n; k++) {
+    free(figure->cases[k].curve);
+    free(figure->cases[k].label);
+  }
+  free(figure->cases);
+  recipe_free(figure->recipe);
+  json_decref(figure->files);
+  *figure = (struct figure){.n = 0};
+}

@@ -1,0 +1,169 @@
+/* `sphbench figure`: runs what is missing, writes the data, draws, and prints the files. */
+#include "figure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "arguments.h"
+#include "front.h"
+
+enum { MOST_FIGURES = 256 };
+
+struct request {
+  const char *results, *out, *jobs;
+  int all, standard, quiet;
+  const char *names[MOST_FIGURES];
+  int num_names;
+};
+
+static int by_order(const void *a, const void *b)
+{
+  const struct recipe *x = ((const struct figure *)a)->recipe;
+  const struct recipe *y = ((const struct figure *)b)->recipe;
+  return x->order != y->order ? (x->order > y->order) - (x->order < y->order)
+                              : strcmp(x->name, y->name);
+}
+
+static status parse(struct request *r, int argc, char **argv)
+{
+  const struct flag flags[] = {
+    {"--results", &r->results, NULL}, {"-o", &r->out, NULL},          {"--jobs", &r->jobs, NULL},
+    {"--all", NULL, &r->all},         {"--standard", NULL, &r->standard}, {"--quiet", NULL, &r->quiet},
+  };
+  const struct arguments what = {"figure", flags, sizeof flags / sizeof *flags,
+                                 r->names, MOST_FIGURES, &r->num_names};
+  *r = (struct request){.results = "results"};
+  TRY(arguments_parse(&what, argc, argv));
+  if ((r->num_names > 0) + r->all + r->standard == 1) return OK;
+  return user_error("figure: either NAMEs, --standard or --all is needed; 'sphbench list figures' "
+                    "lists them");
+}
+
+/* Read the recipes that are asked for; figures [num_names], of which *n are used. */
+static status prepare(const struct request *r, const char *const *names, int num_names,
+                      const struct names *solvers, struct queue *queue, struct figure *figures,
+                      int *n)
+{
+  for (int k = 0; k < num_names; k++) {
+    if (r->standard) {
+      struct recipe *recipe;
+      TRY(recipe_read(names[k], &recipe));
+      const int wanted = recipe->standard;
+      recipe_free(recipe);
+      if (!wanted) continue;
+    }
+    TRY(figure_prepare(&figures[(*n)++], names[k], solvers, queue));
+  }
+  return *n ? OK : user_error("figure: there is nothing to draw");
+}
+
+/* What the report wants to know of a figure. */
+static status write_facts(const struct figure *f, const struct queue *queue)
+{
+  static const char *const kinds[] = {"frames", "series", "metric", "table"};
+  const struct path path = path_of("%s/figure.json", f->data.text);
+  json_t *runs = json_array();
+  struct new_file file;
+  for (int k = 0; k < f->n; k++)
+    json_array_append_new(runs, json_string(queue->run[f->cases[k].run].id));
+  json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:s, s:O, s:o}", "name", f->recipe->name, "about",
+                             f->recipe->about, "statement", f->recipe->statement, "order",
+                             f->recipe->order, "kind", kinds[f->recipe->extract.kind], "files",
+                             f->files, "runs", runs);
+  status result = object ? file_begin(&file, path.text)
+                         : user_error("%s/recipe.yaml: a text is not UTF-8", f->folder.text);
+  if (result == OK) {
+    json_dumpf(object, file.stream, JSON_INDENT(1));
+    result = file_commit(&file);
+  }
+  json_decref(object);
+  return result;
+}
+
+static status finish(struct figure *f, const struct queue *queue, const char *out)
+{
+  f->data = path_of("%s/%s", out, f->recipe->name);
+  TRY(figure_extract(f, queue));
+  const int is_table = f->recipe->extract.kind == EXTRACT_TABLE;
+  if (!is_table) TRY(figure_draw(f, out));
+  TRY(write_facts(f, queue));
+  if (is_table)
+    printf("%s/table.dat\n", f->data.text);
+  else
+    printf("%s/%s.png\n%s/%s.svg\n", out, f->recipe->name, out, f->recipe->name);
+  fflush(stdout);
+  return OK;
+}
+
+/* One figure without data must not keep the others from being drawn: its sentence is told and the
+ * last such status returned. */
+static status finish_all(struct figure *figures, int n, const struct queue *queue, const char *out)
+{
+  status last = OK;
+  for (int k = 0; k < n; k++) {
+    const status result = finish(&figures[k], queue, out);
+    if (result == OK) continue;
+    last = result;
+    if (k < n - 1) fprintf(stderr, "sphbench: %s\n", status_sentence());
+  }
+  return last;
+}
+
+/* A crash is a fault of the program, other than a run that diverges. */
+static status tell_crashes(const struct queue *queue)
+{
+  int crashed = 0, k_last = 0;
+  for (int k = 0; k < queue->n; k++)
+    if (queue->run[k].finished && queue->run[k].outcome == OUTCOME_CRASHED) {
+      crashed++;
+      k_last = k;
+    }
+  if (!crashed) return OK;
+  const struct run *run = &queue->run[k_last];
+  const struct path log = run_file(queue->results, run->id, "log");
+  return status_set(ERR_RUN, "%d of %d runs crashed, the last of them %s with %s: %s (log: %s)", crashed,
+                    queue->n, run->argv[1], run->argv[3], run->reason, log.text);
+}
+
+static status work(const struct request *r, struct queue *queue, struct figure *figures, int *n)
+{
+  struct names all = {NULL, 0}, solvers = {NULL, 0};
+  const struct path out = r->out ? path_of("%s", r->out) : path_of("%s/figures", r->results);
+  const int every = r->all || r->standard;
+  if (every) all = recipe_names();
+  status result = solver_names(&solvers);
+  if (result == OK)
+    result = prepare(r, every ? (const char *const *)all.name : r->names, every ? all.n : r->num_names,
+                     &solvers, queue, figures, n);
+  if (result == OK) {
+    qsort(figures, (size_t)*n, sizeof *figures, by_order);
+    result = queue_work(queue);
+  }
+  if (result == OK && !r->quiet)
+    fprintf(stderr, "%d runs done, %d were there already\n", queue->done, queue->n - queue->done);
+  if (result == OK) result = folder_make(out.text);
+  if (result == OK) result = finish_all(figures, *n, queue, out.text);
+  if (result == OK) result = tell_crashes(queue);
+  for (int k = 0; k < *n; k++) figure_free(&figures[k]);
+  names_free(&all);
+  names_free(&solvers);
+  return result;
+}
+
+status verb_figure(int argc, char **argv)
+{
+  static struct figure figures[MOST_FIGURES];
+  struct request r;
+  struct queue queue;
+  int n = 0;
+  TRY(parse(&r, argc, argv));
+  TRY(gnuplot_check());
+  TRY(queue_open(&queue, r.results));
+  long jobs = queue.jobs;
+  status result = argument_whole("--jobs", r.jobs, 1, 256, &jobs);
+  queue.jobs = (int)jobs;
+  queue.quiet = r.quiet;
+  if (result == OK) result = work(&r, &queue, figures, &n);
+  queue_close(&queue);
+  return result;
+}

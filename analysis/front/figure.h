@@ -1,0 +1,61 @@
+/* figure.h - from a recipe to runs, data files and pictures. */
+#ifndef FIGURE_H
+#define FIGURE_H
+#include <jansson.h>
+#include "recipe.h"
+#include "runs.h"
+
+/* The solvers that the variants know; the number of one in this list is its colour and mark in
+ * every figure. ERR_USER: no variant is built; ERR_IO. */
+status solver_names(struct names *names);
+
+/* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
+struct figure_case {
+  int run;      /* in the queue */
+  int colour;   /* number of the solver, from 1 */
+  int group;    /* cases of one curve have the same */
+  char *curve;  /* the solver, and what the recipe adds to tell it from itself */
+  char *label;  /* the same with the value of the varied parameter: "name, spacing 0.01" */
+  const char *solver, *value; /* value of the varied parameter, NULL: none */
+};
+
+struct figure {
+  struct recipe *recipe;
+  struct path folder, data; /* of the recipe; where its data files go */
+  struct figure_case *cases;
+  int n, num_groups;
+  json_t *files; /* what was written: [{file, series, columns: [...]}] */
+};
+
+/* Read a recipe and add its runs to the queue. ERR_USER, ERR_MEMORY, ERR_IO. */
+status figure_prepare(struct figure *figure, const char *name, const struct names *solvers,
+                      struct queue *queue);
+void figure_free(struct figure *figure);
+
+/* Write the data files and contents.gp into figure->data (extract.c). A run without the data that is
+ * asked for leaves a gap. ERR_IO, ERR_USER: nothing at all can be drawn. */
+status figure_extract(struct figure *figure, const struct queue *queue);
+
+/* The parts of the latter for each kind of figure (extract_frames.c, extract_curves.c); `contents` is
+ * contents.gp. */
+status extract_frames(struct figure *figure, const struct queue *queue, FILE *contents);
+status extract_series(struct figure *figure, const struct queue *queue, FILE *contents);
+status extract_metric(struct figure *figure, const struct queue *queue, FILE *contents);
+status extract_table(struct figure *figure, const struct queue *queue, FILE *contents);
+
+/* What they share: a data file, listed in figure->files under `series`; columns are separated by
+ * '|'. The name that is used for a label in file names. Text in contents.gp. */
+status data_begin(struct figure *figure, struct new_file *file, const char *name,
+                  const char *series, const char *columns);
+struct path data_name(const char *label, const char *suffix);
+void put_text(FILE *contents, const char *name, int number, const char *text);
+
+/* The facts of a run that has some (its --json file), NULL otherwise; to be released. */
+json_t *run_facts_json(const struct queue *queue, int run);
+
+/* Draw figure->data with gnuplot; OUT/<name>.svg and .png. ERR_USER: gnuplot is missing or its
+ * script fails. */
+status figure_draw(struct figure *figure, const char *out);
+status gnuplot_check(void);
+
+#endif

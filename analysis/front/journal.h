@@ -1,0 +1,46 @@
+/* journal.h - RESULTS/journal.jsonl: one line of JSON for each run that came to an end. The line is
+ * written after the run's files are whole, so a run without a line is not finished. */
+#ifndef JOURNAL_H
+#define JOURNAL_H
+#include "files.h"
+
+/* How a run ended. O(name, word, meaning) */
+#define OUTCOME_LIST(O)                                            \
+  O(OK, "ok", "ran to its end")                                    \
+  O(DIVERGED, "diverged", "failed numerically, which is a result") \
+  O(UNABLE, "unable", "was refused: the solver cannot do this scene, or a mistake in the request") \
+  O(CRASHED, "crashed", "ended by a signal or without a result")
+#define O(name, word, meaning) OUTCOME_##name,
+enum outcome { OUTCOME_LIST(O) NUM_OUTCOMES };
+#undef O
+extern const char *const outcome_words[NUM_OUTCOMES];
+
+struct journal_entry {
+  char id[HASH_TEXT];
+  enum outcome outcome;
+  int exit_code;
+  double seconds;                         /* wall time */
+  char *reason;                           /* "" where there is nothing to say */
+  char *scene, *solver, *variant, *what;  /* what: the arguments behind `run SCENE --solver NAME` */
+  char date[32];                          /* ISO 8601, UTC, of the end */
+};
+
+struct journal {
+  struct journal_entry *entry;
+  int n, room;
+  int file; /* -1: only read */
+};
+
+/* Read results/journal.jsonl, none if it is missing; a line that is torn or not ours is passed over.
+ * With `write` the journal is locked for this process. ERR_IO; ERR_USER: another process has it. */
+status journal_open(struct journal *journal, const char *results, int write);
+
+/* The last entry of this id, or NULL. */
+const struct journal_entry *journal_find(const struct journal *journal, const char *id);
+
+/* Add a line (and the entry, whose texts are copied). ERR_IO. */
+status journal_add(struct journal *journal, const struct journal_entry *entry);
+
+void journal_close(struct journal *journal);
+
+#endif

@@ -1,0 +1,116 @@
+/* The command `sphbench`: carries out what concerns many runs, and starts the variant (backend,
+ * dimension, precision) that does one run. */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "front.h"
+#include "variants.h"
+
+#ifndef SPHBENCH_VERSION
+#define SPHBENCH_VERSION "0.1.0"
+#endif
+
+static const char usage[] =
+  "sphbench VERB ...: compares pressure solvers for smoothed particle hydrodynamics\n"
+  "\n"
+  "  run SCENE --solver NAME   one run; 'sphbench run --help' lists the flags\n"
+  "  figure NAME...            run what is missing for a figure, then draw it (SVG and PNG)\n"
+  "         --standard | --all    the standard ones; every one\n"
+  "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
+  "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
+  "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
+  "  show NAME [--json]        a solver, scene, metric or figure\n"
+  "  speed [--json FILE]       time per particle of search, iteration and step\n"
+  "  doctor                    what is installed and built; cores, load, noise of the clock\n"
+  "\n"
+  "  --help, --version\n"
+  "\n"
+  "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
+  "Exit codes: 0 done; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
+
+static const char *const verbs[] = {"run",  "show", "speed",  "list",
+                                    "figure", "report", "doctor"};
+static const char *const later[] = {"sweep", "precision",   "stability", "compare",
+                                    "bless", "convergence", "claims"};
+enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
+
+/* Replace this process by the variant; returns only on failure. */
+static status start_variant(int argc, char **argv, struct variant v)
+{
+  struct path executable;
+  TRY(variant_choose(argc, argv, &v));
+  const status found = variant_executable(&v, &executable);
+  if (found != OK && (!strcmp(argv[1], "list") || !strcmp(argv[1], "show"))) {
+    TRY(variant_any(&v, &v));
+    TRY(variant_executable(&v, &executable));
+  } else if (found != OK) {
+    return found;
+  }
+  execv(executable.text, argv);
+  return status_set(ERR_IO, "the variant '%s' cannot be started", executable.text);
+}
+
+static int is_own_list(int argc, char **argv)
+{
+  static const char *const variants_own[] = {"solvers", "scenes", "metrics"};
+  for (int i = 2; i < argc; i++)
+    for (int k = 0; k < 3; k++)
+      if (strcmp(argv[i], variants_own[k]) == 0) return 0;
+  return 1;
+}
+
+static status start_show(int argc, char **argv)
+{
+  const struct variant usual = {"openmp", "f64", 2};
+  int mine = 0;
+  TRY(show_figure(argc, argv, &mine));
+  return mine ? OK : start_variant(argc, argv, usual);
+}
+
+static status unknown(const char *verb)
+{
+  for (int k = 0; k < NUM_LATER; k++)
+    if (strcmp(verb, later[k]) == 0)
+      return user_error("this version does not have the verb '%s' yet", verb);
+  const char *near = nearest_name(verb, verbs, NUM_VERBS);
+  return near ? user_error("unknown verb '%s'; the nearest known one is '%s'", verb, near)
+              : user_error("unknown verb '%s'; 'sphbench --help' lists the known ones", verb);
+}
+
+static status carry_out(int argc, char **argv)
+{
+  const struct variant usual = {"openmp", "f64", 2}, fast = {"openmp", "f32", 3};
+  const char *verb = argv[1];
+  if (strcmp(verb, "run") == 0) return start_variant(argc, argv, usual);
+  if (strcmp(verb, "speed") == 0) return start_variant(argc, argv, fast);
+  if (strcmp(verb, "show") == 0) return start_show(argc, argv);
+  if (strcmp(verb, "list") == 0)
+    return is_own_list(argc, argv) ? verb_list(argc, argv) : start_variant(argc, argv, usual);
+  if (strcmp(verb, "figure") == 0) return verb_figure(argc, argv);
+  if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
+  if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);
+  return unknown(verb);
+}
+
+static int is_help(const char *word)
+{
+  return !strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help");
+}
+
+int main(int argc, char **argv)
+{
+  const char *verb = argc > 1 ? argv[1] : "--help";
+  const int own = strcmp(verb, "run") && strcmp(verb, "speed");
+  if (is_help(verb) || (argc > 2 && own && is_help(argv[2]))) {
+    fputs(usage, stdout);
+    return 0;
+  }
+  if (strcmp(verb, "--version") == 0) {
+    puts("sphbench " SPHBENCH_VERSION);
+    return 0;
+  }
+  const status result = carry_out(argc, argv);
+  if (result != OK) fprintf(stderr, "sphbench: %s\n", status_sentence());
+  return status_exit_code(result);
+}

@@ -1,0 +1,191 @@
+/* What a run is: its arguments, its id, and whether it was done before. */
+#include "runs.h"
+
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "variants.h"
+
+int processors(void)
+{
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) ? 1 : CPU_COUNT(&set);
+}
+
+struct path run_file(const char *results, const char *id, const char *suffix)
+{
+  return path_of("%s/runs/%s.%s", results, id, suffix);
+}
+
+status queue_open(struct queue *queue, const char *results)
+{
+  const struct path runs = path_of("%s/runs", results);
+  *queue = (struct queue){.results = results, .jobs = processors(), .journal = {.file = -1}};
+  TRY(folder_make(runs.text));
+  return journal_open(&queue->journal, results, 1);
+}
+
+static void run_free(struct run *run)
+{
+  for (int i = 0; i < run->argc; i++) free(run->argv[i]);
+  free(run->argv);
+  free(run->what);
+  free(run->reason);
+}
+
+void queue_close(struct queue *queue)
+{
+  for (int k = 0; k < queue->n; k++) run_free(&queue->run[k]);
+  free(queue->run);
+  journal_close(&queue->journal);
+  *queue = (struct queue){.journal = {.file = -1}};
+}
+
+/* --- arguments --- */
+
+static void add(struct run *run, char *text) { run->argv[run->argc++] = text; }
+
+static void add_flag(struct run *run, const char *flag, const char *value)
+{
+  if (!value) return;
+  add(run, strdup(flag));
+  add(run, strdup(value));
+}
+
+/* A parameter that has a flag of its own is given by it. */
+static void add_varied(struct run *run, const char *name, const char *value)
+{
+  static const char *const own[][2] = {{"spacing", "--spacing"}, {"dt", "--dt"},
+                                       {"t_end", "--t-end"}};
+  if (!name) return;
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+    if (strcmp(name, own[k][0]) == 0) {
+      add_flag(run, own[k][1], value);
+      return;
+    }
+  add(run, strdup("--set"));
+  add(run, text_make("%s=%s", name, value));
+}
+
+static status make_arguments(struct run *run, const struct run_request *r)
+{
+  enum { MOST_OTHERS = 24 };
+  run->argv = calloc((size_t)(MOST_OTHERS + 2 * r->num_sets), sizeof *run->argv);
+  if (!run->argv) return status_set(ERR_MEMORY, "out of memory");
+  add(run, strdup("run"));
+  add(run, strdup(r->scene));
+  add_flag(run, "--solver", r->solver);
+  add_flag(run, "--dim", r->dim);
+  add_flag(run, "--precision", r->precision);
+  add_flag(run, "--spacing", r->spacing);
+  add_flag(run, "--dt", r->dt);
+  add_flag(run, "--t-end", r->t_end);
+  add_flag(run, "--frames", r->frames);
+  add_varied(run, r->vary, r->value);
+  for (int k = 0; k < r->num_sets; k++) add_flag(run, "--set", r->set[k]);
+  for (int k = 0; k < run->argc; k++)
+    if (!run->argv[k]) return status_set(ERR_MEMORY, "out of memory");
+  return OK;
+}
+
+/* The arguments from number `first` on, as one text. */
+static char *join(const struct run *run, int first)
+{
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return NULL;
+  for (int k = first; k < run->argc; k++) fprintf(out, "%s%s", k > first ? " " : "", run->argv[k]);
+  fclose(out);
+  return text;
+}
+
+/* --- identity --- */
+
+/* Of an executable's content; read once, since all runs of a queue share few of them. */
+static status executable_hash(const struct path *executable, unsigned long long *hash)
+{
+  static struct path known;
+  static unsigned long long known_hash;
+  if (strcmp(known.text, executable->text) != 0) {
+    unsigned long long fresh = HASH_START;
+    TRY(hash_file(&fresh, executable->text));
+    known = *executable;
+    known_hash = fresh;
+  }
+  *hash = known_hash;
+  return OK;
+}
+
+static status identify(struct run *run, const char *scene)
+{
+  unsigned long long hash;
+  TRY(executable_hash(&run->executable, &hash));
+  for (int k = 0; k < run->argc; k++)
+    hash = hash_bytes(hash, run->argv[k], strlen(run->argv[k]) + 1);
+  if (path_is_file(scene)) TRY(hash_file(&hash, scene));
+  snprintf(run->id, sizeof run->id, "%016llx", hash);
+  return OK;
+}
+
+static int is_whole(const struct queue *queue, const struct journal_entry *entry)
+{
+  if (entry->outcome != OUTCOME_OK && entry->outcome != OUTCOME_DIVERGED) return 1;
+  const struct path json = run_file(queue->results, entry->id, "json");
+  const struct path frames = run_file(queue->results, entry->id, "vtkhdf");
+  return path_is_file(json.text) && path_is_file(frames.text);
+}
+
+static void look_up(const struct queue *queue, struct run *run)
+{
+  const struct journal_entry *entry = journal_find(&queue->journal, run->id);
+  if (!entry || !is_whole(queue, entry)) return;
+  run->finished = 1;
+  run->outcome = entry->outcome;
+  run->seconds = entry->seconds;
+  run->reason = strdup(entry->reason);
+}
+
+static status make_run(const struct run_request *request, struct run *run)
+{
+  struct variant variant = {"openmp", "f64", 2};
+  TRY(make_arguments(run, request));
+  TRY(variant_choose(run->argc, run->argv, &variant));
+  TRY(variant_executable(&variant, &run->executable));
+  run->name = variant_name(&variant);
+  run->what = join(run, 4);
+  return run->what ? identify(run, request->scene) : status_set(ERR_MEMORY, "out of memory");
+}
+
+static status make_room(struct queue *queue)
+{
+  if (queue->n < queue->room) return OK;
+  const int room = queue->room ? 2 * queue->room : 64;
+  struct run *more = realloc(queue->run, (size_t)room * sizeof *more);
+  if (!more) return status_set(ERR_MEMORY, "out of memory");
+  queue->run = more;
+  queue->room = room;
+  return OK;
+}
+
+status queue_add(struct queue *queue, const struct run_request *request, int *number)
+{
+  struct run run = {.argc = 0};
+  TRY(make_room(queue));
+  const status result = make_run(request, &run);
+  for (int k = 0; result == OK && k < queue->n; k++)
+    if (strcmp(queue->run[k].id, run.id) == 0) {
+      *number = k;
+      run_free(&run);
+      return OK;
+    }
+  if (result != OK) {
+    run_free(&run);
+    return result;
+  }
+  look_up(queue, &run);
+  *number = queue->n;
+  queue->run[queue->n++] = run;
+  return OK;
+}

@@ -1,0 +1,59 @@
+/* runs.h - runs that are carried out once: a queue of requests, each known by what it computes and
+ * by the executable that computes it. Results lie in RESULTS/runs/<id>.json, .vtkhdf and .log, and
+ * the end of each is a line of RESULTS/journal.jsonl. The whole may be killed at any time; what was
+ * finished is not run again. */
+#ifndef RUNS_H
+#define RUNS_H
+#include "journal.h"
+
+/* One run as a user would type it; NULL: the scene's or the program's own default. */
+struct run_request {
+  const char *scene, *solver;
+  const char *dim, *precision, *dt, *t_end, *spacing, *frames;
+  char *const *set; /* KEY=VALUE [num_sets] */
+  int num_sets;
+  const char *vary, *value; /* one parameter more, by its name; NULL: none */
+};
+
+struct run {
+  char id[HASH_TEXT];
+  struct path executable, name; /* name: of the variant */
+  char **argv;                  /* NULL-terminated, without the files to write */
+  int argc;
+  char *what;                   /* the arguments behind `run SCENE --solver NAME`, as one text */
+  enum outcome outcome;
+  char *reason;
+  double seconds;
+  int finished; /* has an outcome */
+};
+
+struct queue {
+  struct run *run;
+  int n, room;
+  const char *results;
+  struct journal journal;
+  int jobs;  /* at once */
+  int quiet; /* no progress */
+  int done;  /* were run just now */
+};
+
+/* Open the journal of `results`, making the folder. ERR_IO, ERR_USER. */
+status queue_open(struct queue *queue, const char *results);
+
+/* Add a request, or find the one that is the same; its number in *number. ERR_USER: its variant is
+ * not built; ERR_IO, ERR_MEMORY. */
+status queue_add(struct queue *queue, const struct run_request *request, int *number);
+
+/* Carry out what is not finished, up to `jobs` at once. ERR_RUN: stopped by Ctrl-C or SIGTERM (after
+ * the children stopped); ERR_IO. A run that fails is no error here but an outcome. */
+status queue_work(struct queue *queue);
+
+/* The file of a run: suffix "json", "vtkhdf" or "log". */
+struct path run_file(const char *results, const char *id, const char *suffix);
+
+void queue_close(struct queue *queue);
+
+/* Processors that this process may use. */
+int processors(void);
+
+#endif

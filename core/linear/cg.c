@@ -1,0 +1,62 @@
+#include "cg.h"
+
+STAGE real times_matrix(const struct cg *s, const real *p, int i)
+{
+  lanes off = NO_LANES;
+  for_slots(&s->rows, i, ij) off += kept(s->coef, ij) * of(p, ij);
+  return s->diag[i] * p[i] - sum(off);
+}
+/* r = b - A x,  d = r / diag */
+STAGE void residual(const struct cg *s, int i)
+{
+  s->r[i] = s->b[i] - times_matrix(s, s->x, i);
+  s->d[i] = s->r[i] / s->diag[i];
+}
+STAGE void clear(const struct cg *s, int i) { s->x[i] = 0; }
+STAGE real norm_b(const struct cg *s, int i) { return s->weight[i] * sq(s->b[i]); }
+STAGE real norm_r(const struct cg *s, int i) { return s->weight[i] * sq(s->r[i]); }
+/* <r, z>,  z = r / diag */
+STAGE real r_dot_z(const struct cg *s, int i) { return s->weight[i] * sq(s->r[i]) / s->diag[i]; }
+/* q = A d;  <d, q> */
+STAGE real apply(const struct cg *s, int i)
+{
+  s->q[i] = times_matrix(s, s->d, i);
+  return s->weight[i] * s->d[i] * s->q[i];
+}
+/* x += step d,  r -= step q;  ||r||^2 */
+STAGE real advance(const struct cg *s, int i)
+{
+  s->x[i] += s->step * s->d[i];
+  s->r[i] -= s->step * s->q[i];
+  return s->weight[i] * sq(s->r[i]);
+}
+/* d = z + beta d */
+STAGE void turn(const struct cg *s, int i) { s->d[i] = s->r[i] / s->diag[i] + s->beta * s->d[i]; }
+
+struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
+{
+  struct cg_result result = {0, 1, 0};
+  double bb, rr, rz, dq;
+  sum_over(norm_b, s, s->n, &bb);
+  if (bb == 0) {
+    sweep_over(clear, s, s->n);
+    return result;
+  }
+  sweep_over(residual, s, s->n);
+  sum_over(norm_r, s, s->n, &rr);
+  sum_over(r_dot_z, s, s->n, &rz);
+  while (result.iterations < max_iterations && (result.iterations == 0 || rr > tolerance * tolerance * bb)) {
+    sum_over(apply, s, s->n, &dq);
+    if (!(dq > 0)) break; /* the residual is zero, or the matrix is not positive definite */
+    s->step = (real)(rz / dq);
+    sum_over(advance, s, s->n, &rr);
+    const double rz_before = rz;
+    sum_over(r_dot_z, s, s->n, &rz);
+    s->beta = (real)(rz / rz_before);
+    sweep_over(turn, s, s->n);
+    result.iterations++;
+  }
+  result.residual = sqrt(rr / bb);
+  result.converged = rr <= tolerance * tolerance * bb;
+  return result;
+}

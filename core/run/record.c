@@ -1,0 +1,59 @@
+/* Samples of metrics over a run. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "driver.h"
+
+static status grow(double **columns, int n, long rows, long *room)
+{
+  if (rows < *room) return OK;
+  const long wanted = *room ? 2 * *room : 256;
+  for (int k = 0; k < n; k++) {
+    double *grown = realloc(columns[k], sizeof(double) * (size_t)wanted);
+    if (!grown) return status_set(ERR_MEMORY, "no memory for the series");
+    columns[k] = grown;
+  }
+  *room = wanted;
+  return OK;
+}
+
+status record_sample(struct record *r, struct run *run, struct setting *set, const struct snapshot *now)
+{
+  const enum phase before = clock_enter(PHASE_METRICS);
+  status result = grow(r->sample, NUM_METRICS + 3, r->rows, &r->row_room);
+  if (result == OK) {
+    for (int k = 0; k < NUM_METRICS; k++) r->last.value[k] = NAN;
+    metrics_measure(now, &r->last);
+    if (set->benchmark && set->benchmark->measure) set->benchmark->measure(set->self, now, &r->last);
+    long total = 0;
+    for (int k = 0; k < run->num_iterations; k++) total += run->iterations[k].total;
+    const long steps = run->step - r->steps_counted;
+    for (int k = 0; k < NUM_METRICS; k++) r->sample[k][r->rows] = r->last.value[k];
+    r->sample[SAMPLE_TIME][r->rows] = now->time;
+    r->sample[SAMPLE_ITERATIONS][r->rows] = steps > 0 ? (double)(total - r->iterations_counted) / (double)steps : 0;
+    r->sample[SAMPLE_RESIDUAL][r->rows] = run->step_residual;
+    r->steps_counted = run->step;
+    r->iterations_counted = total;
+    r->rows++;
+  }
+  clock_enter(before);
+  return result;
+}
+
+status record_step(struct record *r, const struct run *run)
+{
+  TRY(grow(r->step, 3, r->steps, &r->step_room));
+  r->step[0][r->steps] = run->time;
+  r->step[1][r->steps] = run->step_iterations;
+  r->step[2][r->steps] = run->step_residual;
+  r->steps++;
+  return OK;
+}
+
+void record_free(struct record *r)
+{
+  for (int k = 0; k < NUM_METRICS + 3; k++) free(r->sample[k]);
+  for (int k = 0; k < 3; k++) free(r->step[k]);
+  memset(r, 0, sizeof *r);
+}

@@ -1,0 +1,265 @@
+/* `sphbench run`: one scene with one solver. */
+#include <math.h>
+#include <omp.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../base/memory.h"
+#include "../base/progress.h"
+#include "../io/result_file.h"
+#include "../io/result_json.h"
+#include "facts.h"
+
+/* One run from the command line and everything that is open for it. */
+struct session {
+  const struct options *o;
+  struct plan plan;
+  struct run *run;
+  struct record record;
+  struct facts facts;
+  struct result_file *file;
+  struct progress bar;
+  long frames, next_frame;
+  double next_sample, t_end;
+};
+
+static volatile sig_atomic_t stop_signal;
+static void on_signal(int number) { stop_signal = number; }
+
+static void catch_signals(void)
+{
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+/* order[label] = place in the snapshot, so that row k of every frame is particle k. */
+static int *order_by_label(const struct snapshot *now)
+{
+  int *order = malloc(sizeof(int) * (size_t)(now->n + 1));
+  for (int i = 0; order && i < now->n; i++) order[now->id[i]] = i;
+  return order;
+}
+
+static enum result_type real_type(void) { return sizeof(real) == 4 ? RESULT_FLOAT : RESULT_DOUBLE; }
+
+static status write_frame(struct session *s, const struct snapshot *now)
+{
+  struct result_array arrays[5] = {{"position", "m", "position", DIM, real_type(), now->x},
+                                   {"velocity", "m/s", "velocity", DIM, real_type(), now->v}};
+  int n = 2;
+  if (now->p) arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), now->p};
+  else if (store_find(&s->run->store, "p")) /* at the start: every frame has the same arrays */
+    arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), NULL};
+  arrays[n++] = (struct result_array){"id", "1", "label given at the start", 1, RESULT_INT, now->id};
+  int *order = order_by_label(now);
+  real *none = calloc((size_t)now->n + 1, sizeof(real));
+  if (!order || !none) {
+    free(order);
+    free(none);
+    return status_set(ERR_MEMORY, "no memory for a frame");
+  }
+  for (int k = 0; k < n; k++)
+    if (!arrays[k].data) arrays[k].data = none;
+  const struct result_set fluid = {now->n, order, n, arrays};
+  const struct fact numbers[] = {{"step", "1", "number of steps so far", (double)now->step, NULL},
+                                 {"iterations", "1", "of the last step", s->run->step_iterations, NULL}};
+  const status result = result_file_add_frame(s->file, now->time, &fluid, 2, numbers);
+  free(order);
+  free(none);
+  return result;
+}
+
+static status write_walls(struct session *s, const struct snapshot *now)
+{
+  const int n = now->n_all - now->n;
+  if (n == 0) return OK;
+  const struct result_array array = {"position", "m", "position of wall particles", DIM, real_type(), now->x + now->n};
+  const struct result_set walls = {n, NULL, 1, &array};
+  return result_file_add_walls(s->file, &walls);
+}
+
+/* Sample the metrics and write a frame, each when it is due. */
+static status sample(struct session *s, int last)
+{
+  struct run *run = s->run;
+  const double eps = 1e-9 * run->dt;
+  const int sample_due = last || run->time >= s->next_sample - eps;
+  const double frame_time = s->frames > 0 ? s->t_end * (double)s->next_frame / (double)s->frames : 0;
+  const int frame_due = s->file && (last || run->time >= frame_time - run->dt / 2);
+  if (!sample_due && !frame_due) return OK;
+  struct snapshot now;
+  TRY(run_snapshot(run, &now));
+  status result = OK;
+  if (sample_due) {
+    result = record_sample(&s->record, run, &s->plan.setting, &now);
+    s->next_sample += s->t_end / run->scene.common.samples;
+    if (s->next_sample < run->time) s->next_sample = run->time;
+  }
+  if (frame_due && result == OK) {
+    const enum phase before = clock_enter(PHASE_OUTPUT);
+    if (run->step == 0) result = write_walls(s, &now);
+    if (result == OK) result = write_frame(s, &now);
+    facts_update(&s->facts, &s->plan, run, &s->record);
+    if (result == OK) result = result_file_add_series(s->file, &s->facts.run);
+    while (s->frames > 0 && s->t_end * (double)s->next_frame / (double)s->frames <= run->time + run->dt / 2)
+      s->next_frame++;
+    clock_enter(before);
+  }
+  snapshot_free(&now);
+  return result;
+}
+
+/* Prescribed motion of the scene, on a host copy of the particles. */
+static status drive(struct session *s, double time)
+{
+  const struct setting *set = &s->plan.setting;
+  if (!set->benchmark || !set->benchmark->drive) return OK;
+  struct particles p = s->run->view->p, host = {.n = p.n, .n_all = p.n_all};
+  host.x = malloc(sizeof(vec) * (size_t)(p.n_all + 1));
+  host.v = malloc(sizeof(vec) * (size_t)(p.n_all + 1));
+  host.id = malloc(sizeof(int) * (size_t)(p.n + 1));
+  const int ready = host.x && host.v && host.id;
+  if (ready) {
+    memory_to_host(host.x, p.x, sizeof(vec) * (size_t)p.n_all);
+    memory_to_host(host.v, p.v, sizeof(vec) * (size_t)p.n_all);
+    memory_to_host(host.id, p.id, sizeof(int) * (size_t)p.n);
+    set->benchmark->drive(&s->run->scene, set->self, host, time);
+    memory_from_host(p.x, host.x, sizeof(vec) * (size_t)p.n_all);
+    memory_from_host(p.v, host.v, sizeof(vec) * (size_t)p.n_all);
+  }
+  free(host.x);
+  free(host.v);
+  free(host.id);
+  return ready ? OK : status_set(ERR_MEMORY, "no memory for the prescribed motion");
+}
+
+static status step_to_end(struct session *s)
+{
+  struct run *run = s->run;
+  const long steps = (long)ceil(s->t_end / run->dt - 1e-9);
+  while (run->step < steps && !run->diverged && !stop_signal) {
+    TRY(drive(s, run->time + run->dt));
+    TRY(run_step(run));
+    TRY(record_step(&s->record, run));
+    const int last = run->step == steps || run->diverged || stop_signal;
+    TRY(sample(s, last));
+    char note[64];
+    snprintf(note, sizeof note, "t = %.4g s, %d iterations", run->time, run->step_iterations);
+    progress_show(&s->bar, (double)run->step / (double)steps, note);
+  }
+  return OK;
+}
+
+static status project_once(struct session *s)
+{
+  TRY(run_project(s->run));
+  TRY(record_step(&s->record, s->run));
+  return sample(s, 1);
+}
+
+static void print_summary(const struct session *s)
+{
+  const struct run_facts *f = &s->facts.run;
+  printf("%s with %s (%s): %ld particles, %ld steps to t = %.6g s, %.2f iterations per step\n", f->scene,
+         f->solver, f->variant, f->particles, f->steps, f->time_end, f->iterations.mean);
+  if (f->reason) printf("%s: %s\n", f->status == RUN_DIVERGED ? "diverged" : "stopped", f->reason);
+  for (int k = 0; k < f->num_metrics; k++)
+    if (isfinite(f->metrics[k].value))
+      printf("  %-22s %12.6g %s\n", f->metrics[k].name, f->metrics[k].value, f->metrics[k].unit);
+  printf("time:");
+  for (int k = 0; k < f->timing.num_phases; k++)
+    if (f->timing.phases[k].value > 5e-4) printf(" %s %.3f s", f->timing.phases[k].name, f->timing.phases[k].value);
+  printf(", in all %.3f s; %.3g us per particle and step\n", f->timing.total,
+         1e6 * f->timing.per_step / (double)(f->particles > 0 ? f->particles : 1));
+}
+
+static status finish(struct session *s, status result, double seconds)
+{
+  struct run *run = s->run;
+  enum run_status end = RUN_DONE;
+  const char *reason = NULL;
+  if (run->diverged) {
+    end = RUN_DIVERGED;
+    reason = run->reason;
+  } else if (stop_signal) {
+    end = RUN_INTERRUPTED;
+    reason = stop_signal == SIGINT ? "stopped by Ctrl-C" : "stopped by SIGTERM";
+  }
+  if (result != OK) return result;
+  facts_end(&s->facts, &s->plan, run, &s->record, end, reason, seconds);
+  if (s->file) {
+    struct result_file *file = s->file;
+    s->file = NULL;
+    TRY(result_file_finish(file, &s->facts.run));
+  }
+  if (s->o->json) TRY(result_json_write(s->o->json, &s->facts.run));
+  if (!s->o->quiet && !(s->o->json && strcmp(s->o->json, "-") == 0)) print_summary(s);
+  if (s->o->explain) explain(run);
+  if (run->diverged)
+    return status_set(ERR_RUN, "the run diverged at t = %.6g s (step %ld): %s", run->time, run->step, run->reason);
+  if (stop_signal) return status_set(ERR_RUN, "the run was stopped at t = %.6g s (step %ld)", run->time, run->step);
+  return OK;
+}
+
+static status dry_run(const struct session *s)
+{
+  const struct run *run = s->run;
+  const double steps = s->plan.setting.benchmark && s->plan.setting.benchmark->projection ? 1 : ceil(s->t_end / run->dt - 1e-9);
+  printf("%s with %s (%s): %d fluid and %d wall particles, %.0f steps of %g s\n", s->o->name, run->solver->name,
+         SPHBENCH_VARIANT, run->view->p.n, run->view->p.n_all - run->view->p.n, steps, run->dt);
+  for (int k = 0; k < s->plan.num_parameters; k++) {
+    const struct fact *f = &s->plan.parameters[k];
+    if (f->word) printf("  %-18s %-12s %s\n", f->name, f->word, f->about);
+    else printf("  %-18s %-12.9g %s [%s]\n", f->name, f->value, f->about, f->unit);
+  }
+  if (s->o->explain) explain(run);
+  return OK;
+}
+
+static status carry_out(struct session *s, int threads)
+{
+  struct setting *set = &s->plan.setting;
+  const double dt = set->scene.common.dt;
+  s->t_end = set->scene.common.t_end;
+  TRY(run_create(s->plan.solver, s->plan.solver_values, &set->scene, set->asks, &s->run));
+  if (s->o->dry_run) return dry_run(s);
+  facts_start(&s->facts, s->o, &s->plan, s->run, threads);
+  if (s->o->output) TRY(result_file_open(&s->file, s->o->output, &s->facts.run));
+  catch_signals();
+  progress_begin(&s->bar, s->o->name, s->o->quiet);
+  clock_reset();
+  const double begun = clock_now();
+  status result = sample(s, 0);
+  if (result == OK && dt > 0)
+    result = set->benchmark && set->benchmark->projection ? project_once(s) : step_to_end(s);
+  progress_end(&s->bar);
+  return finish(s, result, clock_now() - begun);
+}
+
+status verb_run(const struct options *o)
+{
+  struct session s;
+  memset(&s, 0, sizeof s);
+  s.o = o;
+  long threads;
+  TRY(option_whole("--threads", o->threads, 1, 1024, omp_get_max_threads(), &threads));
+  TRY(option_whole("--frames", o->frames, 1, 1000000, 50, &s.frames));
+  omp_set_num_threads((int)threads);
+  int other_dim = 0;
+  status result = plan_make(o, &s.plan, &other_dim);
+  if (result == OK && other_dim) {
+    plan_free(&s.plan);
+    return switch_dimension(o, other_dim);
+  }
+  if (result == OK) result = carry_out(&s, (int)threads);
+  result_file_discard(s.file);
+  record_free(&s.record);
+  if (s.run) run_free(s.run);
+  plan_free(&s.plan);
+  return result;
+}

@@ -1,0 +1,203 @@
+/* `sphbench speed`: microseconds per particle of the neighbour search, of a solver's iteration and of its step, on a settled
+ * heap, beside what the machine can do at most. */
+#include <jansson.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ceilings.h"
+#include "driver.h"
+#include "facts.h"
+
+enum { DEFAULT_PARTICLES = 50000, STEPS = 10, ROUNDS = 5, FEW = 2, MANY = 6 };
+#define SUPPORT 2.0 /* dx: four particle radii */
+
+struct speed_case {
+  const char *solver;
+  int particles, walls;
+  double neighbours_mean, neighbours, iteration, step, bytes_per_particle; /* us per particle */
+  double mean_iterations;
+  double fraction; /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
+};
+
+/* A heap: a block of fluid on the floor of a box, its lattice disturbed, as it lies after settling. */
+static status heap(struct scene *scene, int particles)
+{
+  const int side = (int)lround(pow(particles, 1.0 / DIM));
+  memset(scene, 0, sizeof *scene);
+  for (int k = 0; k < num_scene_params; k++)
+    *(double *)((char *)&scene->common + scene_param_rows[k].offset) = scene_param_rows[k].initial;
+  scene->common.spacing = 0.05;
+  scene->common.support = SUPPORT;
+  scene->common.dt = 1e-3;
+  scene->common.jitter = 0.05;
+  scene->common.kernel = KERNEL_CUBIC;
+  scene->seed = 1;
+  scene->gravity = zero();
+  scene->gravity.c[DIM - 1] = (real)-scene->common.gravity;
+  vec low = zero(), high = zero();
+  for (int d = 0; d < DIM; d++) high.c[d] = (real)(scene->common.spacing * side);
+  TRY(scene_fill_box(scene, low, high, zero(), NULL));
+  scene_apply_jitter(scene);
+  vec top = high;
+  top.c[DIM - 1] = 2 * high.c[DIM - 1];
+  TRY(scene_wall_box(scene, low, top, 2, 1));
+  for (int d = 0; d < DIM; d++) {
+    scene->low.c[d] = low.c[d] - 10 * (real)scene->common.spacing;
+    scene->high.c[d] = top.c[d] + 10 * (real)scene->common.spacing;
+  }
+  return OK;
+}
+
+/* Seconds per step, the best of ROUNDS times STEPS; *search gets those of the neighbour search alone. */
+static status time_steps(struct run *run, double *step, double *search)
+{
+  *step = *search = 1e300;
+  for (int round = 0; round < ROUNDS; round++) {
+    double before[NUM_PHASES], after[NUM_PHASES];
+    clock_phases(before);
+    const double begun = clock_now();
+    for (int k = 0; k < STEPS; k++) TRY(run_step(run));
+    const double each = (clock_now() - begun) / STEPS;
+    clock_phases(after);
+    const double nb = (after[PHASE_NEIGHBOURS] - before[PHASE_NEIGHBOURS]) / STEPS;
+    if (each < *step) *step = each;
+    if (nb < *search) *search = nb;
+  }
+  return run->diverged ? status_set(ERR_RUN, "the heap diverged with '%s': %s", run->solver->name, run->reason) : OK;
+}
+
+/* A run on the heap with so many fixed iterations (0: the solver's own stopping rule). */
+static status open_run(const struct solver *solver, int particles, int iterations, struct run **run)
+{
+  struct scene scene;
+  double values[64];
+  TRY(heap(&scene, particles));
+  for (int k = 0; k < solver->num_params && k < 64; k++) values[k] = solver->params[k].initial;
+  const struct param *fixed = param_find(solver->params, solver->num_params, "fixed_iterations");
+  if (fixed) values[fixed - solver->params] = iterations;
+  TRY(run_create(solver, values, &scene, 0, run));
+  for (int k = 0; k < STEPS; k++) TRY(run_step(*run)); /* warm up and settle */
+  return OK;
+}
+
+static double iterations_per_step(const struct run *run)
+{
+  long total = 0;
+  for (int k = 0; k < run->num_iterations; k++) total += run->iterations[k].last;
+  return (double)total;
+}
+
+static status time_solver(const struct solver *solver, int particles, double bandwidth, struct speed_case *c)
+{
+  struct run *run = NULL;
+  double few, many, search, unused, few_iterations;
+  status result = open_run(solver, particles, FEW, &run);
+  if (result == OK) result = time_steps(run, &few, &search);
+  if (result == OK) {
+    const double us = 1e6 / run->view->p.n;
+    c->solver = solver->name;
+    c->particles = run->view->p.n;
+    c->walls = run->view->p.n_all - run->view->p.n;
+    c->neighbours = us * search;
+    c->step = us * few;
+    c->bytes_per_particle = run_bytes_per_particle(run);
+    double pairs = 0;
+    struct snapshot now;
+    if (run_snapshot(run, &now) == OK) {
+      const struct pairs *list = now.pairs(&now);
+      for (int i = 0; list && i < now.n; i++) pairs += list->last[i] - list->first[i] - 1;
+      c->neighbours_mean = pairs / now.n;
+      snapshot_free(&now);
+    }
+  }
+  few_iterations = run ? iterations_per_step(run) : 0;
+  run_free(run);
+  run = NULL;
+  if (result == OK) result = open_run(solver, particles, MANY, &run);
+  if (result == OK) result = time_steps(run, &many, &unused);
+  if (result == OK) {
+    c->mean_iterations = few_iterations;
+    const double more = iterations_per_step(run) - few_iterations;
+    c->iteration = more > 0 ? 1e6 * (many - few) / more / c->particles : (double)NAN;
+    /* at the least: the pair list once per sweep over pairs, two sweeps, and ten reals per particle */
+    const double bytes = 2 * sizeof(int) * (c->neighbours_mean + 1) + 10 * sizeof(real);
+    c->fraction = bandwidth > 0 ? bytes / bandwidth / (1e-6 * c->iteration) : (double)NAN;
+  }
+  run_free(run);
+  return result;
+}
+
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static status write_json(const char *path, const struct provenance *p, const struct ceilings *top,
+                         const struct speed_case *c, int n)
+{
+  json_t *cases = json_array();
+  for (int k = 0; k < n; k++) {
+    json_t *row = json_pack("{s:s, s:s, s:i, s:i}", "case", "heap", "solver", c[k].solver, "particles", c[k].particles,
+                            "walls", c[k].walls);
+    json_object_set_new(row, "neighbours_mean", number(c[k].neighbours_mean));
+    json_object_set_new(row, "neighbours_us_per_particle", number(c[k].neighbours));
+    json_object_set_new(row, "iteration_us_per_particle", number(c[k].iteration));
+    json_object_set_new(row, "step_us_per_particle", number(c[k].step));
+    json_object_set_new(row, "step_iterations", number(c[k].mean_iterations));
+    json_object_set_new(row, "bytes_per_particle", number(c[k].bytes_per_particle));
+    json_object_set_new(row, "fraction_of_ceiling", number(c[k].fraction));
+    json_array_append_new(cases, row);
+  }
+  json_t *all = json_pack("{s:{s:s, s:i, s:s, s:s, s:s, s:s}, s:{s:f, s:f}, s:o}", "machine", "cpu", p->cpu, "threads",
+                          p->threads, "variant", SPHBENCH_VARIANT, "compiler", p->compiler, "date", p->date, "commit",
+                          p->commit, "ceilings", "bandwidth_bytes_per_s", top->bandwidth, "peak_flops", top->flops,
+                          "cases", cases);
+  const int failed = strcmp(path, "-") == 0 ? json_dumpf(all, stdout, JSON_INDENT(1)) : json_dump_file(all, path, JSON_INDENT(1));
+  json_decref(all);
+  return failed ? status_set(ERR_IO, "cannot write '%s'", path) : OK;
+}
+
+/* Is the solver in the comma-separated list? NULL: all are. */
+static int wanted(const char *list, const char *name)
+{
+  if (!list) return 1;
+  const size_t length = strlen(name);
+  for (const char *at = list; (at = strstr(at, name)); at += length)
+    if ((at == list || at[-1] == ',') && (at[length] == '\0' || at[length] == ',')) return 1;
+  return 0;
+}
+
+static void print_case(const struct speed_case *c)
+{
+  printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles, c->neighbours_mean,
+         c->neighbours, c->iteration, c->step, c->mean_iterations, c->bytes_per_particle, c->fraction);
+  fflush(stdout);
+}
+
+status verb_speed(const struct options *o)
+{
+  long threads, particles;
+  TRY(option_whole("--threads", o->threads, 1, 1024, 1, &threads));
+  TRY(option_whole("--particles", o->particles, 100, 100000000, DEFAULT_PARTICLES, &particles));
+  omp_set_num_threads((int)threads);
+  struct provenance p;
+  provenance_fill(&p, (int)threads, o->argc, (const char *const *)o->argv);
+  const struct ceilings top = ceilings_measure();
+  printf("%s, %ld thread(s), %s\nceilings: %.1f GB/s (triad), %.0f GFLOP/s (multiply-add)\n", p.cpu, threads,
+         SPHBENCH_VARIANT, 1e-9 * top.bandwidth, 1e-9 * top.flops);
+  printf("heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they can be fixed\n", SUPPORT,
+         FEW);
+  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours", "iteration", "step",
+         "iters", "B/particle", "ceiling");
+  struct speed_case cases[64];
+  int n = 0;
+  for (int k = 0; k < num_solvers && n < 64; k++) {
+    if (!wanted(o->solvers, solvers[k]->name)) continue;
+    memset(&cases[n], 0, sizeof cases[n]);
+    TRY(time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]));
+    print_case(&cases[n++]);
+  }
+  if (n == 0) return user_error("--solvers: none of '%s' is known", o->solvers);
+  return o->json ? write_json(o->json, &p, &top, cases, n) : OK;
+}

@@ -1,0 +1,45 @@
+/* lattice.h - what a full square or cubic lattice of spacing dx says about Jacobi iterations. */
+#ifndef LATTICE_H
+#define LATTICE_H
+#include "kernels.h"
+
+/* One mode exp(i k.x), k = angle/dx [DIM], of  A p_i = sum_j (a_i - a_j).grad W_ij,  a_i = sum_j (p_i + p_j) grad W_ij:
+ * its eigenvalue over A's diagonal, which is |sum_j sin(k.x_ij) grad W_ij|^2 / sum_j |grad W_ij|^2 on a lattice. */
+static inline double lattice_mode(const struct kernel *kernel, double dx, const double angle[DIM])
+{
+  const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
+  double wave[3] = {0, 0, 0}, diagonal = 0;
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -reach; b <= reach; b++)
+      for (int c = -deep; c <= deep; c++) {
+        const double at[3] = {(double)a, (double)b, (double)c};
+        const double r = sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
+        if (r > 0) {
+          const double slope = (double)kernel_dW(kernel, (real)(dx * r), DIM);
+          double phase = 0;
+          for (int d = 0; d < DIM; d++) phase += angle[d] * at[d];
+          for (int d = 0; d < DIM; d++) wave[d] += sin(phase) * slope * at[d] / r;
+          diagonal += slope * slope;
+        }
+      }
+  return diagonal > 0
+             ? (wave[0] * wave[0] + wave[1] * wave[1] + wave[2] * wave[2]) / diagonal
+             : 0;
+}
+
+/* The largest eigenvalue theta_max of that A over its diagonal: a Jacobi iteration on it converges for a relaxation below
+ * 2/theta_max. Searched along the axis, the face and the space diagonal, where the maxima lie. */
+static inline double lattice_stiffest(const struct kernel *kernel, double dx)
+{
+  const int steps = 32;
+  double largest = 0;
+  for (int axes = 1; axes <= DIM; axes++)
+    for (int k = 1; k < steps; k++) {
+      double angle[3] = {0, 0, 0};
+      for (int d = 0; d < axes; d++) angle[d] = (double)PI * k / steps;
+      const double mode = lattice_mode(kernel, dx, angle);
+      if (mode > largest) largest = mode;
+    }
+  return largest;
+}
+#endif
