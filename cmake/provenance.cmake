@@ -1,5 +1,5 @@
-# What is built, for the results: generated/provenance_build.h, brought up to date at every build and
-# touched only when it changed.
+# What is built, for the results: generated/provenance_build.h, brought up to date at every build
+# and touched only when it changed.
 #
 #   include(cmake/provenance.cmake)     gives the target `provenance`; whoever includes the header
 #                                       depends on it and looks in ${CMAKE_BINARY_DIR}/generated

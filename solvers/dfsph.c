@@ -146,10 +146,10 @@ STAGE void pressure(const state *s, int i)
 
 /* Is the solver done after k corrections? Counts the solve if so; gives the run up if its error is not a number. */
 static status judge(struct run *run, const state *s, const char *what, int k, double error, int least,
-                    real tolerance, int *done)
+                    double tolerance, int *done)
 {
   const int fixed = (int)s->fixed_iterations, most = fixed > 0 ? fixed : (int)s->max_iterations;
-  const int reached = fixed > 0 ? k == fixed : k >= least && error <= (double)tolerance;
+  const int reached = fixed > 0 ? k == fixed : k >= least && error <= tolerance;
   if (!(error >= 0)) return run_diverged(run, "the error of the %s solver is not a number", what);
   *done = reached || k >= most;
   if (*done) run_iterations(run, what, k, error, reached);
@@ -164,21 +164,24 @@ static status solve_density(struct run *run, state *s)
   for (int k = 0, done = 0;; k++) {
     double error;
     sum_over(predict_density, s, s->p.n, &error);
-    TRY(judge(run, s, "density", k, error / s->p.n, LEAST_DENSITY, s->tolerance, &done));
+    TRY(judge(run, s, "density", k, error / s->p.n, LEAST_DENSITY, (double)s->tolerance, &done));
     if (done) return OK;
     sweep(correct_density, s);
   }
 }
 
-/* Alg. 2 */
-static status solve_divergence(struct run *run, state *s)
+/* Alg. 2. The tolerance is a relative change of density per step, or a part of the error at the start. */
+static status solve_divergence(struct run *run, state *s, int relative)
 {
+  double tolerance = (double)s->divergence_tolerance;
   sweep(begin_divergence, s);
   if (s->warm_divergence > 0) sweep(correct_divergence, s);
   for (int k = 0, done = 0;; k++) {
     double error;
     sum_over(predict_divergence, s, s->p.n, &error);
-    TRY(judge(run, s, "divergence", k, error / s->p.n, LEAST_DIVERGENCE, s->divergence_tolerance, &done));
+    error /= s->p.n;
+    if (k == 0 && relative) tolerance *= error;
+    TRY(judge(run, s, "divergence", k, error, LEAST_DIVERGENCE, tolerance, &done));
     if (done) return OK;
     sweep(correct_divergence, s);
   }
@@ -193,7 +196,7 @@ static status step(struct run *run, void *self)
   TRY(run_move(run));
   TRY(run_neighbours(run));
   sweep(factor, s);
-  if (s->divergence_solver == (real)ON) TRY(solve_divergence(run, s));
+  if (s->divergence_solver == (real)ON) TRY(solve_divergence(run, s, 0));
   sweep(pressure, s);
   return OK;
 }
@@ -217,7 +220,7 @@ static status project(struct run *run, void *self)
 {
   state *s = (state *)self;
   sweep(factor, s);
-  TRY(solve_divergence(run, s));
+  TRY(solve_divergence(run, s, 1));
   sweep(pressure, s);
   return OK;
 }

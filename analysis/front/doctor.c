@@ -22,9 +22,11 @@ static const struct tool tools[] = {
   {"cyaml", {"pkg-config", "--modversion", "libcyaml"}, "scene files and recipes"},
   {"jansson", {"pkg-config", "--modversion", "jansson"}, "results for machines"},
   {"cmocka", {"pkg-config", "--modversion", "cmocka"}, "tests"},
-  {"h5py", {"/usr/bin/python3", "-c", "import h5py; print(h5py.__version__)"},
+  {"h5py",
+   {"/usr/bin/python3", "-c", "import h5py; print(h5py.__version__)"},
    "reading results in Python"},
-  {"VTK", {"/usr/bin/python3", "-c", "import vtk; print(vtk.vtkVersion().GetVTKVersion())"},
+  {"VTK",
+   {"/usr/bin/python3", "-c", "import vtk; print(vtk.vtkVersion().GetVTKVersion())"},
    "test of the result files"},
   {"nvcc", {"sh", "-c", "nvcc --version | sed -n 's/.*release //p'"}, "builds the CUDA variants"},
 };
@@ -57,13 +59,15 @@ static void print_variants(void)
     const struct variant v = variant_number(k);
     const struct path name = variant_name(&v);
     struct path unused;
-    printf("  %-16s %s\n", name.text, variant_executable(&v, &unused) == OK ? "built" : "not built");
+    printf("  %-16s %s\n", name.text,
+           variant_executable(&v, &unused) == OK ? "built" : "not built");
   }
 }
 
 static void print_machine(void)
 {
-  static const char *const gpu[] = {"nvidia-smi", "--query-gpu=name", "--format=csv,noheader", NULL};
+  static const char *const gpu[] = {"nvidia-smi", "--query-gpu=name", "--format=csv,noheader",
+                                    NULL};
   struct provenance p;
   struct sysinfo memory;
   double load[3] = {0, 0, 0};

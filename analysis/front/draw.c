@@ -13,9 +13,10 @@ status gnuplot_check(void)
   char *version = process_output(argv);
   const int missing = !version;
   free(version);
-  return missing ? user_error("gnuplot is missing, which draws the figures; as root: apt-get install "
-                              "gnuplot-nox")
-                 : OK;
+  return missing
+           ? user_error("gnuplot is missing, which draws the figures; as root: apt-get install "
+                        "gnuplot-nox")
+           : OK;
 }
 
 static char *quoted(const char *name, const char *text)
@@ -34,10 +35,12 @@ static status drawing_failed(const struct path *script, const struct path *log)
 {
   char *text = NULL;
   size_t size;
-  if (file_read(log->text, &text, &size) != OK) return user_error("gnuplot failed on '%s'", script->text);
+  if (file_read(log->text, &text, &size) != OK)
+    return user_error("gnuplot failed on '%s'", script->text);
   while (size > 0 && strchr(" \n", text[size - 1])) text[--size] = '\0';
   const char *line = strrchr(text, '\n');
-  const status result = user_error("gnuplot failed on '%s': %s", script->text, line ? line + 1 : text);
+  const status result =
+    user_error("gnuplot failed on '%s': %s", script->text, line ? line + 1 : text);
   free(text);
   return result;
 }
@@ -45,14 +48,14 @@ static status drawing_failed(const struct path *script, const struct path *log)
 static status draw_kind(const struct figure *f, const char *out, const char *kind)
 {
   const char *name = f->recipe->name;
-  const struct path data = data_folder(), style = path_of("%s/paper-figures/style.gp", data.text);
+  const struct path data = data_folder(), shared = path_of("%s/paper-figures/", data.text);
   const struct path script = path_of("%s/%s.gp", f->folder.text, name);
   const struct path temp = path_of("%s/%s.%s.tmp", f->data.text, name, kind);
   const struct path log = path_of("%s/gnuplot.log", f->data.text);
   char absolute[4096];
   if (!realpath(script.text, absolute))
     return user_error("the figure '%s' has no script '%s'", name, script.text);
-  char *set[] = {quoted("kind", kind), quoted("style", style.text),
+  char *set[] = {quoted("kind", kind), quoted("shared", shared.text),
                  quoted("picture", strrchr(temp.text, '/') + 1)};
   const char *const argv[] = {"gnuplot", "-e", set[0], "-e", set[1], "-e", set[2], absolute, NULL};
   const struct process process = {.argv = argv, .folder = f->data.text, .log = log.text};
@@ -62,8 +65,7 @@ static status draw_kind(const struct figure *f, const char *out, const char *kin
   if (result != OK) return result;
   if (exit_code || !path_is_file(temp.text)) return drawing_failed(&script, &log);
   const struct path whole = path_of("%s/%s.%s", out, name, kind);
-  if (rename(temp.text, whole.text))
-    return status_set(ERR_IO, "cannot write '%s'", whole.text);
+  if (rename(temp.text, whole.text)) return status_set(ERR_IO, "cannot write '%s'", whole.text);
   unlink(log.text);
   return OK;
 }

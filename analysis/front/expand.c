@@ -39,10 +39,14 @@ static int number_of(const struct names *solvers, const char *name)
 
 static struct run_request request_of(const struct recipe_runs *runs)
 {
-  return (struct run_request){.scene = runs->scene, .dim = runs->dim,
-                              .precision = runs->precision, .dt = runs->dt,
-                              .t_end = runs->t_end, .spacing = runs->spacing,
-                              .frames = runs->frames, .set = runs->set,
+  return (struct run_request){.scene = runs->scene,
+                              .dim = runs->dim,
+                              .precision = runs->precision,
+                              .dt = runs->dt,
+                              .t_end = runs->t_end,
+                              .spacing = runs->spacing,
+                              .frames = runs->frames,
+                              .set = runs->set,
                               .num_sets = (int)runs->num_set,
                               .vary = runs->vary ? runs->vary->name : NULL};
 }
@@ -68,8 +72,8 @@ static status add_case(struct figure *f, const struct recipe_runs *runs, struct 
 static status add_group(struct figure *f, const struct recipe_runs *runs, const char *solver,
                         const struct names *solvers, struct queue *queue)
 {
-  struct figure_case one = {.solver = solver, .colour = number_of(solvers, solver),
-                            .group = f->num_groups++};
+  struct figure_case one = {
+    .solver = solver, .colour = number_of(solvers, solver), .group = f->num_groups++};
   if (!one.colour) {
     const char *near = nearest_name(solver, (const char *const *)solvers->name, solvers->n);
     return user_error("%s/recipe.yaml: runs: solvers: '%s' is unknown; %s%s%s", f->folder.text,

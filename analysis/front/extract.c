@@ -97,7 +97,8 @@ static status write_overlay(struct figure *f, const struct recipe_overlay *o, co
     result = file_commit(&file);
   }
   free(text);
-  if (result == OK && rows == 0) return user_error("%s: it has no rows 'x,y' of numbers", path.text);
+  if (result == OK && rows == 0)
+    return user_error("%s: it has no rows 'x,y' of numbers", path.text);
   return result;
 }
 
@@ -134,9 +135,11 @@ static void remove_old(const struct figure *f)
 
 static status write_contents(struct figure *f, const struct queue *queue, FILE *contents)
 {
-  static status (*const extract[])(struct figure *, const struct queue *, FILE *) = {
-    [EXTRACT_FRAMES] = extract_frames, [EXTRACT_SERIES] = extract_series,
-    [EXTRACT_METRIC] = extract_metric, [EXTRACT_TABLE] = extract_table};
+  static status (*const extract[])(struct figure *, const struct queue *,
+                                   FILE *) = {[EXTRACT_FRAMES] = extract_frames,
+                                              [EXTRACT_SERIES] = extract_series,
+                                              [EXTRACT_METRIC] = extract_metric,
+                                              [EXTRACT_TABLE] = extract_table};
   fprintf(contents, "# What there is to draw; written from recipe.yaml and the results.\n");
   put_text(contents, "label_x", 0, f->recipe->labels.x);
   put_text(contents, "label_y", 0, f->recipe->labels.y);

@@ -10,7 +10,8 @@ static double number_in(const json_t *value)
   return json_is_number(value) ? json_number_value(value) : (double)NAN;
 }
 
-/* The final value of a metric; also the run's own "iterations" (mean per step) and "per_step" [s]. */
+/* The final value of a metric; also the run's own "iterations" (mean per step) and "per_step" [s].
+ */
 static double final_value(const json_t *facts, const char *name)
 {
   const json_t *metric = json_object_get(json_object_get(facts, "metrics"), name);
@@ -46,8 +47,8 @@ static char *column_names(const struct figure *f, const json_t *facts, const cha
 static void declare(FILE *contents, int n)
 {
   const int room = n > 0 ? n : 1;
-  fprintf(contents, "array file[%d]\narray title[%d]\narray colour[%d]\narray fit[%d]\n", room, room,
-          room, room);
+  fprintf(contents, "array file[%d]\narray title[%d]\narray colour[%d]\narray fit[%d]\n", room,
+          room, room, room);
 }
 
 static void put_curve(FILE *contents, int number, const char *file, const char *title, int colour)

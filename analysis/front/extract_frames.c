@@ -54,8 +54,8 @@ static status write_frame(struct figure *f, struct result_read *r, long frame,
   struct new_file file;
   const struct path series = path_of("%s, t = %.4g s", one->label, result_read_time(r, frame));
   const struct path columns =
-    path_of("x [m]|y [m]|%s", f->recipe->labels.colour ? f->recipe->labels.colour
-                                                       : f->recipe->extract.colour);
+    path_of("x [m]|y [m]|%s",
+            f->recipe->labels.colour ? f->recipe->labels.colour : f->recipe->extract.colour);
   TRY(data_begin(f, &file, name, series.text, columns.text));
   const status result = write_rows(file.stream, r, frame, array_of(f->recipe->extract.colour));
   if (result == OK) return file_commit(&file);
@@ -72,8 +72,7 @@ static status write_walls(struct figure *f, struct result_read *r, FILE *content
   TRY(result_read_series(r, "walls/position", &x));
   const status begun = data_begin(f, &file, "walls.dat", "wall particles", "x [m]|y [m]");
   for (long i = 0; begun == OK && i < x.rows; i++)
-    fprintf(file.stream, "%.5g %.5g\n", x.values[i * x.components],
-            x.values[i * x.components + 1]);
+    fprintf(file.stream, "%.5g %.5g\n", x.values[i * x.components], x.values[i * x.components + 1]);
   free(x.values);
   put_text(contents, "walls", 0, "walls.dat");
   return begun == OK ? file_commit(&file) : begun;
@@ -101,7 +100,8 @@ struct row {
 static status write_cell(const struct row *row, struct result_read *r, unsigned column, int *drawn)
 {
   const double time = row->figure->recipe->extract.times[column];
-  const int cell = (row->number - 1) * (int)row->figure->recipe->extract.num_times + (int)column + 1;
+  const int cell =
+    (row->number - 1) * (int)row->figure->recipe->extract.num_times + (int)column + 1;
   const long frame = r ? frame_at(r, time, row->run->outcome == OUTCOME_DIVERGED) : -1;
   struct path name = {{0}}, note = {{0}};
   if (frame >= 0) {

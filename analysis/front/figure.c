@@ -27,10 +27,11 @@ static int by_order(const void *a, const void *b)
 static status parse(struct request *r, int argc, char **argv)
 {
   const struct flag flags[] = {
-    {"--results", &r->results, NULL}, {"-o", &r->out, NULL},          {"--jobs", &r->jobs, NULL},
-    {"--all", NULL, &r->all},         {"--standard", NULL, &r->standard}, {"--quiet", NULL, &r->quiet},
+    {"--results", &r->results, NULL},   {"-o", &r->out, NULL},
+    {"--jobs", &r->jobs, NULL},         {"--all", NULL, &r->all},
+    {"--standard", NULL, &r->standard}, {"--quiet", NULL, &r->quiet},
   };
-  const struct arguments what = {"figure", flags, sizeof flags / sizeof *flags,
+  const struct arguments what = {"figure", flags,        sizeof flags / sizeof *flags,
                                  r->names, MOST_FIGURES, &r->num_names};
   *r = (struct request){.results = "results"};
   TRY(arguments_parse(&what, argc, argv));
@@ -66,10 +67,10 @@ static status write_facts(const struct figure *f, const struct queue *queue)
   struct new_file file;
   for (int k = 0; k < f->n; k++)
     json_array_append_new(runs, json_string(queue->run[f->cases[k].run].id));
-  json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:s, s:O, s:o}", "name", f->recipe->name, "about",
-                             f->recipe->about, "statement", f->recipe->statement, "order",
-                             f->recipe->order, "kind", kinds[f->recipe->extract.kind], "files",
-                             f->files, "runs", runs);
+  json_t *object =
+    json_pack("{s:s, s:s, s:s, s:i, s:s, s:O, s:o}", "name", f->recipe->name, "about",
+              f->recipe->about, "statement", f->recipe->statement, "order", f->recipe->order,
+              "kind", kinds[f->recipe->extract.kind], "files", f->files, "runs", runs);
   status result = object ? file_begin(&file, path.text)
                          : user_error("%s/recipe.yaml: a text is not UTF-8", f->folder.text);
   if (result == OK) {
@@ -121,8 +122,8 @@ static status tell_crashes(const struct queue *queue)
   if (!crashed) return OK;
   const struct run *run = &queue->run[k_last];
   const struct path log = run_file(queue->results, run->id, "log");
-  return status_set(ERR_RUN, "%d of %d runs crashed, the last of them %s with %s: %s (log: %s)", crashed,
-                    queue->n, run->argv[1], run->argv[3], run->reason, log.text);
+  return status_set(ERR_RUN, "%d of %d runs crashed, the last of them %s with %s: %s (log: %s)",
+                    crashed, queue->n, run->argv[1], run->argv[3], run->reason, log.text);
 }
 
 static status work(const struct request *r, struct queue *queue, struct figure *figures, int *n)
@@ -133,8 +134,8 @@ static status work(const struct request *r, struct queue *queue, struct figure *
   if (every) all = recipe_names();
   status result = solver_names(&solvers);
   if (result == OK)
-    result = prepare(r, every ? (const char *const *)all.name : r->names, every ? all.n : r->num_names,
-                     &solvers, queue, figures, n);
+    result = prepare(r, every ? (const char *const *)all.name : r->names,
+                     every ? all.n : r->num_names, &solvers, queue, figures, n);
   if (result == OK) {
     qsort(figures, (size_t)*n, sizeof *figures, by_order);
     result = queue_work(queue);

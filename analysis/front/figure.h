@@ -11,11 +11,11 @@ status solver_names(struct names *names);
 
 /* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
 struct figure_case {
-  int run;      /* in the queue */
-  int colour;   /* number of the solver, from 1 */
-  int group;    /* cases of one curve have the same */
-  char *curve;  /* the solver, and what the recipe adds to tell it from itself */
-  char *label;  /* the same with the value of the varied parameter: "name, spacing 0.01" */
+  int run;     /* in the queue */
+  int colour;  /* number of the solver, from 1 */
+  int group;   /* cases of one curve have the same */
+  char *curve; /* the solver, and what the recipe adds to tell it from itself */
+  char *label; /* the same with the value of the varied parameter: "name, spacing 0.01" */
   const char *solver, *value; /* value of the varied parameter, NULL: none */
 };
 
@@ -32,12 +32,12 @@ status figure_prepare(struct figure *figure, const char *name, const struct name
                       struct queue *queue);
 void figure_free(struct figure *figure);
 
-/* Write the data files and contents.gp into figure->data (extract.c). A run without the data that is
- * asked for leaves a gap. ERR_IO, ERR_USER: nothing at all can be drawn. */
+/* Write the data files and contents.gp into figure->data (extract.c). A run without the data that
+ * is asked for leaves a gap. ERR_IO, ERR_USER: nothing at all can be drawn. */
 status figure_extract(struct figure *figure, const struct queue *queue);
 
-/* The parts of the latter for each kind of figure (extract_frames.c, extract_curves.c); `contents` is
- * contents.gp. */
+/* The parts of the latter for each kind of figure (extract_frames.c, extract_curves.c); `contents`
+ * is contents.gp. */
 status extract_frames(struct figure *figure, const struct queue *queue, FILE *contents);
 status extract_series(struct figure *figure, const struct queue *queue, FILE *contents);
 status extract_metric(struct figure *figure, const struct queue *queue, FILE *contents);

@@ -157,7 +157,8 @@ void file_discard(struct new_file *file)
 
 unsigned long long hash_bytes(unsigned long long hash, const void *bytes, size_t size)
 {
-  for (const unsigned char *byte = bytes; size > 0; size--) hash = (hash ^ *byte++) * 1099511628211u;
+  for (const unsigned char *byte = bytes; size > 0; size--)
+    hash = (hash ^ *byte++) * 1099511628211u;
   return hash;
 }
 

@@ -105,11 +105,11 @@ static void close_torn_line(int file)
 static status open_to_write(struct journal *journal, const char *path, const char *results)
 {
   journal->file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (journal->file < 0)
-    return status_set(ERR_IO, "cannot write '%s': %s", path, strerror(errno));
+  if (journal->file < 0) return status_set(ERR_IO, "cannot write '%s': %s", path, strerror(errno));
   if (flock(journal->file, LOCK_EX | LOCK_NB))
     return user_error("another sphbench is running into '%s'; wait for it or choose another "
-                      "--results", results);
+                      "--results",
+                      results);
   close_torn_line(journal->file);
   return OK;
 }
@@ -141,11 +141,11 @@ const struct journal_entry *journal_find(const struct journal *journal, const ch
 
 static char *line_of(const struct journal_entry *entry)
 {
-  json_t *object = json_pack(
-    "{s:s, s:s, s:i, s:s, s:f, s:s, s:s, s:s, s:s, s:s}", "id", entry->id, "status",
-    outcome_words[entry->outcome], "exit", entry->exit_code, "reason", entry->reason, "seconds",
-    entry->seconds, "scene", entry->scene, "solver", entry->solver, "variant", entry->variant,
-    "what", entry->what, "date", entry->date);
+  json_t *object =
+    json_pack("{s:s, s:s, s:i, s:s, s:f, s:s, s:s, s:s, s:s, s:s}", "id", entry->id, "status",
+              outcome_words[entry->outcome], "exit", entry->exit_code, "reason", entry->reason,
+              "seconds", entry->seconds, "scene", entry->scene, "solver", entry->solver, "variant",
+              entry->variant, "what", entry->what, "date", entry->date);
   char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
   json_decref(object);
   char *line = text ? text_make("%s\n", text) : NULL;

@@ -5,9 +5,9 @@
 #include "files.h"
 
 /* How a run ended. O(name, word, meaning) */
-#define OUTCOME_LIST(O)                                            \
-  O(OK, "ok", "ran to its end")                                    \
-  O(DIVERGED, "diverged", "failed numerically, which is a result") \
+#define OUTCOME_LIST(O)                                                                            \
+  O(OK, "ok", "ran to its end")                                                                    \
+  O(DIVERGED, "diverged", "failed numerically, which is a result")                                 \
   O(UNABLE, "unable", "was refused: the solver cannot do this scene, or a mistake in the request") \
   O(CRASHED, "crashed", "ended by a signal or without a result")
 #define O(name, word, meaning) OUTCOME_##name,
@@ -19,10 +19,10 @@ struct journal_entry {
   char id[HASH_TEXT];
   enum outcome outcome;
   int exit_code;
-  double seconds;                         /* wall time */
-  char *reason;                           /* "" where there is nothing to say */
-  char *scene, *solver, *variant, *what;  /* what: the arguments behind `run SCENE --solver NAME` */
-  char date[32];                          /* ISO 8601, UTC, of the end */
+  double seconds;                        /* wall time */
+  char *reason;                          /* "" where there is nothing to say */
+  char *scene, *solver, *variant, *what; /* what: the arguments behind `run SCENE --solver NAME` */
+  char date[32];                         /* ISO 8601, UTC, of the end */
 };
 
 struct journal {
@@ -31,8 +31,9 @@ struct journal {
   int file; /* -1: only read */
 };
 
-/* Read results/journal.jsonl, none if it is missing; a line that is torn or not ours is passed over.
- * With `write` the journal is locked for this process. ERR_IO; ERR_USER: another process has it. */
+/* Read results/journal.jsonl, none if it is missing; a line that is torn or not ours is passed
+ * over. With `write` the journal is locked for this process. ERR_IO; ERR_USER: another process has
+ * it. */
 status journal_open(struct journal *journal, const char *results, int write);
 
 /* The last entry of this id, or NULL. */

@@ -1,4 +1,5 @@
-/* `list` and `show` of what the variants do not know: figures, variants, plans; and of everything. */
+/* `list` and `show` of what the variants do not know: figures, variants, plans; and of everything.
+ */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,8 +102,7 @@ static status list_from_variant(const struct listing *to, const char *kind)
   return OK;
 }
 
-static const char *const kinds[] = {"solvers", "scenes",   "metrics",
-                                    "figures", "variants", "plans"};
+static const char *const kinds[] = {"solvers", "scenes", "metrics", "figures", "variants", "plans"};
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds, NUM_VARIANTS_OWN = 3 };
 
 static status list_kind(const struct listing *to, int kind)
@@ -127,15 +127,18 @@ static status list_named(const struct listing *to, const char *name)
   for (int k = 0; k < NUM_KINDS; k++)
     if (strcmp(name, kinds[k]) == 0) return list_kind(to, k);
   return user_error("list: '%s' found, allowed is solvers, scenes, metrics, figures, variants or "
-                    "plans", name);
+                    "plans",
+                    name);
 }
 
 status verb_list(int argc, char **argv)
 {
   const char *name = NULL, *unused = NULL;
   int num_names = 0, json = 0;
-  const struct flag flags[] = {{"--json", NULL, &json}, {"--backend", &unused, NULL},
-                               {"--dim", &unused, NULL}, {"--precision", &unused, NULL}};
+  const struct flag flags[] = {{"--json", NULL, &json},
+                               {"--backend", &unused, NULL},
+                               {"--dim", &unused, NULL},
+                               {"--precision", &unused, NULL}};
   const struct arguments what = {"list", flags, 4, &name, 1, &num_names};
   struct variant v = {"openmp", "f64", 2};
   TRY(arguments_parse(&what, argc, argv));
@@ -162,8 +165,8 @@ static json_t *recipe_json(const struct recipe *r)
       json_array_append_new(solvers, json_string(one->solvers[s]));
     json_array_append_new(runs, json_pack("{s:s, s:o}", "scene", one->scene, "solvers", solvers));
   }
-  return json_pack("{s:s, s:s, s:s, s:s, s:o}", "kind", "figure", "name", r->name, "about", r->about,
-                   "statement", r->statement, "runs", runs);
+  return json_pack("{s:s, s:s, s:s, s:s, s:o}", "kind", "figure", "name", r->name, "about",
+                   r->about, "statement", r->statement, "runs", runs);
 }
 
 static void print_recipe(const struct recipe *r)

@@ -29,8 +29,7 @@ static const char usage[] =
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
   "Exit codes: 0 done; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",  "show", "speed",  "list",
-                                    "figure", "report", "doctor"};
+static const char *const verbs[] = {"run", "show", "speed", "list", "figure", "report", "doctor"};
 static const char *const later[] = {"sweep", "precision",   "stability", "compare",
                                     "bless", "convergence", "claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };

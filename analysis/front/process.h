@@ -1,4 +1,5 @@
-/* process.h - starting other programs. Children end when this process does, even if it is killed. */
+/* process.h - starting other programs. Children end when this process does, even if it is killed.
+ */
 #ifndef PROCESS_H
 #define PROCESS_H
 #include <sys/types.h>

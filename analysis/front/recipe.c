@@ -4,20 +4,20 @@
 #include <string.h>
 
 #include "variants.h"
-#include "yaml.h"
+#include "yaml_file.h"
 
 /* --- schema: a member of struct `type` under its own name --- */
 
-#define TEXT(type, member) \
-  CYAML_FIELD_STRING_PTR(#member, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct type, member, 1, \
-                         CYAML_UNLIMITED)
+#define TEXT(type, member)                                                                       \
+  CYAML_FIELD_STRING_PTR(#member, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct type, member, \
+                         1, CYAML_UNLIMITED)
 #define NEEDED_TEXT(type, member) \
   CYAML_FIELD_STRING_PTR(#member, CYAML_FLAG_POINTER, struct type, member, 1, CYAML_UNLIMITED)
 #define NUMBER(type, member) CYAML_FIELD_FLOAT(#member, CYAML_FLAG_OPTIONAL, struct type, member)
 #define YES_OR_NO(type, member) CYAML_FIELD_BOOL(#member, CYAML_FLAG_OPTIONAL, struct type, member)
-#define LIST(type, member, count, entry)                                                            \
-  CYAML_FIELD_SEQUENCE_COUNT(#member, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct type, member, \
-                             count, &(entry), 0, CYAML_UNLIMITED)
+#define LIST(type, member, count, entry)                                                     \
+  CYAML_FIELD_SEQUENCE_COUNT(#member, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct type, \
+                             member, count, &(entry), 0, CYAML_UNLIMITED)
 
 static const cyaml_schema_value_t text_value = {
   CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 1, CYAML_UNLIMITED)};
@@ -38,8 +38,8 @@ static const cyaml_schema_field_t runs_fields[] = {
   TEXT(recipe_runs, spacing),
   TEXT(recipe_runs, frames),
   LIST(recipe_runs, set, num_set, text_value),
-  CYAML_FIELD_MAPPING_PTR("vary", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct recipe_runs, vary,
-                          vary_fields),
+  CYAML_FIELD_MAPPING_PTR("vary", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct recipe_runs,
+                          vary, vary_fields),
   CYAML_FIELD_END};
 static const cyaml_schema_value_t runs_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct recipe_runs, runs_fields)};
@@ -57,13 +57,16 @@ static const cyaml_schema_field_t extract_fields[] = {
   YES_OR_NO(recipe_extract, fit),
   CYAML_FIELD_END};
 
-static const cyaml_schema_field_t labels_fields[] = {
-  TEXT(recipe_labels, x), TEXT(recipe_labels, y), TEXT(recipe_labels, colour), CYAML_FIELD_END};
+static const cyaml_schema_field_t labels_fields[] = {TEXT(recipe_labels, x), TEXT(recipe_labels, y),
+                                                     TEXT(recipe_labels, colour), CYAML_FIELD_END};
 
-static const cyaml_schema_field_t overlay_fields[] = {
-  NEEDED_TEXT(recipe_overlay, file), TEXT(recipe_overlay, title), NEEDED_TEXT(recipe_overlay, about),
-  NUMBER(recipe_overlay, scale_x),   NUMBER(recipe_overlay, scale_y),
-  NUMBER(recipe_overlay, time),      CYAML_FIELD_END};
+static const cyaml_schema_field_t overlay_fields[] = {NEEDED_TEXT(recipe_overlay, file),
+                                                      TEXT(recipe_overlay, title),
+                                                      NEEDED_TEXT(recipe_overlay, about),
+                                                      NUMBER(recipe_overlay, scale_x),
+                                                      NUMBER(recipe_overlay, scale_y),
+                                                      NUMBER(recipe_overlay, time),
+                                                      CYAML_FIELD_END};
 static const cyaml_schema_value_t overlay_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct recipe_overlay, overlay_fields)};
 
@@ -129,8 +132,10 @@ static status check_kind(const struct recipe *r, const char *path)
     if (!e->num_times || !e->colour)
       return user_error("%s: extract: kind frames needs times and colour", path);
     if (r->num_windows != 4 && r->num_windows != 4 * e->num_times)
-      return user_error("%s: windows: %u numbers found, allowed is 4 (x0, x1, y0, y1) or 4 for each "
-                        "of the %u times", path, r->num_windows, e->num_times);
+      return user_error(
+        "%s: windows: %u numbers found, allowed is 4 (x0, x1, y0, y1) or 4 for each "
+        "of the %u times",
+        path, r->num_windows, e->num_times);
     if (r->num_colours != 2)
       return user_error("%s: colours: %u numbers found, allowed is 2 (lowest, highest)", path,
                         r->num_colours);
@@ -166,13 +171,13 @@ static status adopt_runs(struct recipe *r, const struct path *path)
   const struct path file = path_of("%s/recipe.yaml", folder.text);
   if (!path_is_file(file.text))
     return user_error("%s: runs_of: no figure is called '%s'", path->text, r->runs_of);
-  TRY(yaml_read(file.text, &recipe_value, (void **)&other));
+  TRY(yaml_file_read(file.text, &recipe_value, (void **)&other));
   r->runs = other->runs;
   r->num_runs = other->num_runs;
   other->runs = NULL;
   other->num_runs = 0;
   const int chained = other->runs_of != NULL;
-  yaml_free(&recipe_value, other);
+  yaml_file_free(&recipe_value, other);
   return chained ? user_error("%s: runs_of: '%s' has no runs of its own", path->text, r->runs_of)
                  : OK;
 }
@@ -182,7 +187,7 @@ status recipe_read(const char *name, struct recipe **recipe)
   const struct path folder = recipe_folder(name), path = path_of("%s/recipe.yaml", folder.text);
   *recipe = NULL;
   if (!path_is_file(path.text) && !strchr(name, '/')) return unknown(name);
-  TRY(yaml_read(path.text, &recipe_value, (void **)recipe));
+  TRY(yaml_file_read(path.text, &recipe_value, (void **)recipe));
   status result = adopt_runs(*recipe, &path);
   if (result == OK) result = check(*recipe, path.text);
   if (result == OK) return OK;
@@ -193,5 +198,5 @@ status recipe_read(const char *name, struct recipe **recipe)
 
 void recipe_free(struct recipe *recipe)
 {
-  if (recipe) yaml_free(&recipe_value, recipe);
+  if (recipe) yaml_file_free(&recipe_value, recipe);
 }

@@ -7,23 +7,23 @@
 /* Runs of one scene: every solver with every value of the varied parameter. */
 struct recipe_runs {
   char *scene;
-  char *label; /* what tells these runs from others of the same solver; NULL: nothing */
+  char *label;    /* what tells these runs from others of the same solver; NULL: nothing */
   char **solvers; /* none: all that there are */
   unsigned num_solvers;
   char *dim, *precision, *dt, *t_end, *spacing, *frames; /* NULL: the default */
-  char **set; /* KEY=VALUE */
+  char **set;                                            /* KEY=VALUE */
   unsigned num_set;
   struct recipe_vary {
     char *name, **values;
     unsigned num_values;
-  } *vary; /* NULL: nothing is varied */
+  } * vary; /* NULL: nothing is varied */
 };
 
 /* Data that is drawn over the runs' own: columns 1 and 2 of a CSV file. */
 struct recipe_overlay {
-  char *file;  /* relative to the recipe's folder */
-  char *title; /* NULL: none */
-  char *about; /* where it is from */
+  char *file;              /* relative to the recipe's folder */
+  char *title;             /* NULL: none */
+  char *about;             /* where it is from */
   double scale_x, scale_y; /* factors on the columns; 0: 1 */
   double time;             /* frames: of the frame that it belongs to [s] */
 };
@@ -32,16 +32,16 @@ enum extract_kind { EXTRACT_FRAMES, EXTRACT_SERIES, EXTRACT_METRIC, EXTRACT_TABL
 
 struct recipe {
   char *name, *about, *statement;
-  int order;      /* of the figures in a report */
-  bool standard;  /* belongs to --standard */
-  char *runs_of;  /* another recipe whose runs these are; NULL: none */
+  int order;     /* of the figures in a report */
+  bool standard; /* belongs to --standard */
+  char *runs_of; /* another recipe whose runs these are; NULL: none */
   struct recipe_runs *runs;
   unsigned num_runs;
   struct recipe_extract {
     enum extract_kind kind;
     double *times; /* frames [s] */
     unsigned num_times;
-    char *colour;  /* frames: quantity, "speed" or an array of the result file */
+    char *colour;   /* frames: quantity, "speed" or an array of the result file */
     char **columns; /* series, metric, table: names of metrics */
     unsigned num_columns;
     double scale_x; /* series: factor on the time; 0: 1 */

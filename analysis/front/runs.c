@@ -56,8 +56,8 @@ static void add_flag(struct run *run, const char *flag, const char *value)
 /* A parameter that has a flag of its own is given by it. */
 static void add_varied(struct run *run, const char *name, const char *value)
 {
-  static const char *const own[][2] = {{"spacing", "--spacing"}, {"dt", "--dt"},
-                                       {"t_end", "--t-end"}};
+  static const char *const own[][2] = {
+    {"spacing", "--spacing"}, {"dt", "--dt"}, {"t_end", "--t-end"}};
   if (!name) return;
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     if (strcmp(name, own[k][0]) == 0) {

@@ -20,7 +20,7 @@ struct run {
   struct path executable, name; /* name: of the variant */
   char **argv;                  /* NULL-terminated, without the files to write */
   int argc;
-  char *what;                   /* the arguments behind `run SCENE --solver NAME`, as one text */
+  char *what; /* the arguments behind `run SCENE --solver NAME`, as one text */
   enum outcome outcome;
   char *reason;
   double seconds;
@@ -44,8 +44,8 @@ status queue_open(struct queue *queue, const char *results);
  * not built; ERR_IO, ERR_MEMORY. */
 status queue_add(struct queue *queue, const struct run_request *request, int *number);
 
-/* Carry out what is not finished, up to `jobs` at once. ERR_RUN: stopped by Ctrl-C or SIGTERM (after
- * the children stopped); ERR_IO. A run that fails is no error here but an outcome. */
+/* Carry out what is not finished, up to `jobs` at once. ERR_RUN: stopped by Ctrl-C or SIGTERM
+ * (after the children stopped); ERR_IO. A run that fails is no error here but an outcome. */
 status queue_work(struct queue *queue);
 
 /* The file of a run: suffix "json", "vtkhdf" or "log". */

@@ -104,9 +104,10 @@ status variant_executable(const struct variant *v, struct path *executable)
   if (find(v, executable)) return OK;
   const struct path about = variant_about(v), name = variant_name(v);
   if (strcmp(v->backend, "cuda") == 0 && !any_of("cuda"))
-    return status_set(ERR_SKIPPED, "skipped: the CUDA variants are not built (no nvcc was found)");
+    return status_set(ERR_SKIPPED, "skipped: the CUDA variants are not built");
   return user_error("the variant '%s' (%s) is not built; 'sphbench list variants' lists those that "
-                    "are", name.text, about.text);
+                    "are",
+                    name.text, about.text);
 }
 
 status variant_any(const struct variant *wanted, struct variant *found)

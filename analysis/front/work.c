@@ -72,8 +72,8 @@ static status start(struct work *w, struct child *child, int number)
   unlink(json.text); /* what a stopped run left would be taken for the new result */
   unlink(frames.text);
   const struct process process = {.argv = argv, .log = log.text, .one_thread = 1};
-  *child = (struct child){.run = number, .begun = clock_now(),
-                          .expected = expected_time(w->queue, run)};
+  *child =
+    (struct child){.run = number, .begun = clock_now(), .expected = expected_time(w->queue, run)};
   const status started = process_start(&process, &child->pid);
   if (started != OK) child->pid = 0;
   free(argv);
@@ -189,10 +189,14 @@ static void take_end(struct work *w, struct child *child, int state)
   run->finished = 1;
   w->queue->done++;
   tell(w, run);
-  struct journal_entry entry = {.outcome = run->outcome, .exit_code = exit_code,
-                                .seconds = run->seconds, .reason = run->reason,
-                                .scene = run->argv[1], .solver = run->argv[3],
-                                .variant = run->name.text, .what = run->what};
+  struct journal_entry entry = {.outcome = run->outcome,
+                                .exit_code = exit_code,
+                                .seconds = run->seconds,
+                                .reason = run->reason,
+                                .scene = run->argv[1],
+                                .solver = run->argv[3],
+                                .variant = run->name.text,
+                                .what = run->what};
   memcpy(entry.id, run->id, sizeof entry.id);
   if (is_final(exit_code)) fail(w, journal_add(&w->queue->journal, &entry));
 }

@@ -73,7 +73,8 @@ static yaml_mark_t mark_of_offset(const struct yaml_file *f, size_t offset)
 static status syntax_error(const struct yaml_file *f, const yaml_parser_t *parser)
 {
   const char *problem = parser->problem ? parser->problem : "unreadable";
-  if (parser->error == YAML_MEMORY_ERROR) return status_set(ERR_MEMORY, "no memory to read %s", f->path);
+  if (parser->error == YAML_MEMORY_ERROR)
+    return status_set(ERR_MEMORY, "no memory to read %s", f->path);
   if (parser->error == YAML_READER_ERROR)
     return refuse_at(f, mark_of_offset(f, parser->problem_offset), "not YAML: %s", problem);
   return refuse_at(f, parser->problem_mark, "not YAML: %s", problem);
@@ -112,7 +113,8 @@ static status check_syntax(const struct yaml_file *f)
   struct census census = {0, 0, 0};
   status result = OK;
   int more = 1;
-  if (!yaml_parser_initialize(&parser)) return status_set(ERR_MEMORY, "no memory to read %s", f->path);
+  if (!yaml_parser_initialize(&parser))
+    return status_set(ERR_MEMORY, "no memory to read %s", f->path);
   yaml_parser_set_input_string(&parser, f->text, f->length);
   while (more && result == OK) {
     yaml_event_t event;
@@ -133,10 +135,13 @@ static status load_document(struct yaml_file *f)
 {
   yaml_parser_t parser;
   status result = OK;
-  if (!yaml_parser_initialize(&parser)) return status_set(ERR_MEMORY, "no memory to read %s", f->path);
+  if (!yaml_parser_initialize(&parser))
+    return status_set(ERR_MEMORY, "no memory to read %s", f->path);
   yaml_parser_set_input_string(&parser, f->text, f->length);
-  if (yaml_parser_load(&parser, &f->document)) f->has_document = 1;
-  else result = syntax_error(f, &parser);
+  if (yaml_parser_load(&parser, &f->document))
+    f->has_document = 1;
+  else
+    result = syntax_error(f, &parser);
   yaml_parser_delete(&parser);
   return result;
 }
@@ -163,7 +168,8 @@ static const char *kind_text(cyaml_type_e type)
   case CYAML_UINT: return "a whole number";
   case CYAML_FLOAT: return "a number";
   case CYAML_BOOL: return "true or false";
-  case CYAML_STRING: return "text";
+  case CYAML_STRING:
+  case CYAML_ENUM: return "text";
   case CYAML_MAPPING: return "a mapping (key: value)";
   default: return "a list ([.., ..])";
   }
@@ -209,6 +215,21 @@ static int is_finite_number(const char *text)
   return end != text && !*end && errno == 0 && isfinite(number);
 }
 
+/* One of the schema's words. */
+static status check_word(const struct visit *v)
+{
+  const char *text = (const char *)v->node->data.scalar.value;
+  char list[512] = "", found[64];
+  for (uint32_t k = 0; k < v->schema->enumeration.count; k++) {
+    const char *word = v->schema->enumeration.strings[k].str;
+    const size_t used = strlen(list);
+    if (!strcmp(word, text)) return OK;
+    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", word);
+  }
+  return refuse_at(v->f, v->node->start_mark, "%s is %s, allowed are %s", v->path,
+                   found_text(v->node, found), list);
+}
+
 static status check_scalar(const struct visit *v)
 {
   const char *text = (const char *)v->node->data.scalar.value;
@@ -219,6 +240,7 @@ static status check_scalar(const struct visit *v)
     return refuse_at(v->f, v->node->start_mark, "%s has %zu letters, allowed are %u to %u", v->path,
                      length, v->schema->string.min, v->schema->string.max);
   }
+  if (v->schema->type == CYAML_ENUM && right) return check_word(v);
   switch (v->schema->type) {
   case CYAML_FLOAT: right = right && is_finite_number(text); break;
   case CYAML_INT:
@@ -238,13 +260,16 @@ static status check_list(const struct visit *v)
   const yaml_node_item_t *items = v->node->data.sequence.items.start;
   const long n = (long)(v->node->data.sequence.items.top - items);
   const long low = (long)v->schema->sequence.min;
-  const long high = v->schema->sequence.max == CYAML_UNLIMITED ? n + low : (long)v->schema->sequence.max;
-  if (v->schema->type != CYAML_SEQUENCE && v->schema->type != CYAML_SEQUENCE_FIXED) return wrong_kind(v);
+  const long high =
+    v->schema->sequence.max == CYAML_UNLIMITED ? n + low : (long)v->schema->sequence.max;
+  if (v->schema->type != CYAML_SEQUENCE && v->schema->type != CYAML_SEQUENCE_FIXED)
+    return wrong_kind(v);
   if (n < low || n > high)
-    return low == high ? refuse_at(v->f, v->node->start_mark, "%s has %ld entries, allowed are %ld",
-                                   v->path, n, low)
-                       : refuse_at(v->f, v->node->start_mark,
-                                   "%s has %ld entries, allowed are %ld to %ld", v->path, n, low, high);
+    return low == high
+             ? refuse_at(v->f, v->node->start_mark, "%s has %ld entries, allowed are %ld", v->path,
+                         n, low)
+             : refuse_at(v->f, v->node->start_mark, "%s has %ld entries, allowed are %ld to %ld",
+                         v->path, n, low, high);
   for (long k = 0; k < n; k++) {
     struct visit entry = {v->f, node_of(v->f, items[k]), v->schema->sequence.entry, ""};
     snprintf(entry.path, sizeof entry.path, "%.230s[%ld]", v->path, k + 1);
@@ -264,9 +289,9 @@ static status unknown_key(const struct visit *v, const yaml_node_t *key)
     names[n++] = s->key;
   }
   const char *near = nearest_name((const char *)key->data.scalar.value, names, n);
-  return refuse_at(v->f, key->start_mark, "unknown key %s%s%s%s%s%s, allowed are %s",
-                   found_text(key, found), *v->path ? " in " : "", v->path,
-                   near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "", list);
+  return refuse_at(v->f, key->start_mark, "unknown key %s%s%s, allowed are %s%s%s%s",
+                   found_text(key, found), *v->path ? " in " : "", v->path, list,
+                   near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 /* The pair of this key before `end` (NULL: all); NULL if there is none. */
@@ -353,8 +378,8 @@ static status fill(const struct yaml_file *f, void **data)
                     *message ? message : "libcyaml");
 }
 
-status yaml_read(const char *path, const struct cyaml_schema_value *schema, struct yaml_file **file,
-                 void **data)
+status yaml_file_read(const char *path, const struct cyaml_schema_value *schema,
+                      struct yaml_file **file, void **data)
 {
   struct yaml_file *f = calloc(1, sizeof *f);
   *file = NULL;
@@ -373,8 +398,10 @@ status yaml_read(const char *path, const struct cyaml_schema_value *schema, stru
     result = top.node ? check_node(&top) : user_error("%s is empty", path);
   }
   if (result == OK) result = fill(f, data);
-  if (result == OK) *file = f;
-  else yaml_free(f, NULL);
+  if (result == OK)
+    *file = f;
+  else
+    yaml_file_free(f, NULL);
   return result;
 }
 
@@ -410,14 +437,14 @@ static yaml_mark_t mark_of(const struct yaml_file *file, const char *key)
   return node->start_mark;
 }
 
-char *yaml_place(const struct yaml_file *file, const char *key, char *buf, size_t size)
+char *yaml_file_place(const struct yaml_file *file, const char *key, char *buf, size_t size)
 {
   const yaml_mark_t mark = mark_of(file, key);
   snprintf(buf, size, "%s:%zu:%zu", file->path, mark.line + 1, mark.column + 1);
   return buf;
 }
 
-status yaml_refuse(const struct yaml_file *file, const char *key, const char *format, ...)
+status yaml_file_refuse(const struct yaml_file *file, const char *key, const char *format, ...)
 {
   char text[1024];
   va_list arguments;
@@ -427,7 +454,7 @@ status yaml_refuse(const struct yaml_file *file, const char *key, const char *fo
   return refuse_at(file, mark_of(file, key), "%s", text);
 }
 
-void yaml_free(struct yaml_file *file, void *data)
+void yaml_file_free(struct yaml_file *file, void *data)
 {
   char message[256] = "";
   if (!file) return;

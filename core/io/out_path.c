@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "out_path.h"
 
 #include <errno.h>

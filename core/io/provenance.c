@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "provenance.h"
 
 #include <jansson.h>
@@ -9,10 +8,6 @@
 
 #include "h5.h"
 #include "provenance_build.h"
-
-#ifdef SPHBENCH_HAVE_GSL
-#include <gsl/gsl_version.h>
-#endif
 
 /* "model name : Some CPU" on x86; ARM kernels give no name in words. */
 static void find_cpu(char *model, size_t size)
@@ -57,9 +52,6 @@ static void add_libraries(struct provenance *p)
   snprintf(version, sizeof version, "%u.%u.%u", major, minor, release);
   provenance_add_library(p, "hdf5", version);
   provenance_add_library(p, "jansson", JANSSON_VERSION);
-#ifdef SPHBENCH_HAVE_GSL
-  provenance_add_library(p, "gsl", GSL_VERSION);
-#endif
 }
 
 void provenance_fill(struct provenance *p, int threads, int argc, const char *const *argv)

@@ -11,7 +11,7 @@ extern "C" {
  * is not known is "unknown". */
 void provenance_fill(struct provenance *p, int threads, int argc, const char *const *argv);
 
-/* Add a library that the variant uses ("cuda", "13.0"); dropped when there is no room. */
+/* Add a library that the program uses ("gsl", "2.7"; "cuda", "13.0"); dropped without room. */
 void provenance_add_library(struct provenance *p, const char *name, const char *version);
 
 /* The most memory that this process has held [bytes]. */

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "result_file.h"
 
 #include <assert.h>

@@ -1,8 +1,9 @@
 /* result_file.h - one run in one file.
  *
- *   /VTKHDF     VTKHDF 2.0 temporal PolyData, one vertex per particle (VTK >= 9.3, ParaView >= 5.12)
+ *   /VTKHDF     VTKHDF 2.0 PolyData over time, a vertex per particle (VTK >= 9.3, ParaView >= 5.12)
  *   /particles  fluid/{position, velocity, ..., time, count, first}: the same data, other names
- *   /walls      {position, ...}, once;  /virtual/<frame>/{position, ...}: the second set of a method
+ *   /walls      {position, ...}, once
+ *   /virtual    <frame>/{position, ...}: the second set of a method that has one
  *   /metrics    {time, <metric>...}: samples;  steps/{...}: every step;  final/<metric>
  *   /run        scene, solver, variant, status, reason; parameters, provenance, memory;
  *               volatile/: all that differs between two identical runs, and nothing else
@@ -44,7 +45,7 @@ status result_file_open(struct result_file **file, const char *path, const struc
 
 /* Append a frame. `numbers` are quantities of the whole frame ("step", "iterations",
  * "total_energy"). Names, units and types are those of the first frame in every frame; n may
- * change. (VTK >= 9.4 misreads the frame that follows an empty one; h5py and result_read do not.) */
+ * change. (VTK >= 9.4 misreads a frame that follows an empty one; h5py and result_read do not.) */
 status result_file_add_frame(struct result_file *file, double time, const struct result_set *fluid,
                              int num_numbers, const struct fact *numbers);
 

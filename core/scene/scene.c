@@ -159,6 +159,16 @@ static status check_finite(const vec *x, int n, const char *kind)
   return OK;
 }
 
+static status check_velocities(const struct scene *scene)
+{
+  for (int i = 0; i < scene->n; i++)
+    for (int d = 0; d < DIM; d++)
+      if (!isfinite(scene->v[i].c[d]))
+        return user_error("fluid particle %d moves at %g m/s on axis %d, allowed are finite speeds",
+                          i, (double)scene->v[i].c[d], d + 1);
+  return OK;
+}
+
 static status check_inside(const struct scene *scene)
 {
   char at[96], low[96], high[96];
@@ -218,6 +228,7 @@ status scene_check(const struct scene *scene)
                       (double)scene->n + scene->n_wall, INT_MAX / 2);
   TRY(check_finite(scene->x, scene->n, "fluid"));
   TRY(check_finite(scene->wall_x, scene->n_wall, "wall"));
+  TRY(check_velocities(scene));
   TRY(check_inside(scene));
   vec *x = malloc(((size_t)scene->n + (size_t)scene->n_wall) * sizeof *x);
   if (!x) return status_set(ERR_MEMORY, "no memory to check %d particles", scene->n);

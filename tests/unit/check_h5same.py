@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Check that tools/h5same sees every difference but those that it is told to ignore.
 
-    check_h5same.py H5SAME FILE     FILE: a result file
+    check_h5same.py H5SAME PROGRAM     PROGRAM [FILE [elsewhere]] writes a sample (test_result_file)
 """
 import os
 import shutil
@@ -69,9 +69,15 @@ def verdict(tool, *files):
     return done.returncode, done.stdout + done.stderr
 
 
-def main(tool, sample):
+def main(tool, program):
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
+        sample, elsewhere = (os.path.join(folder, name) for name in ("a.vtkhdf", "b.vtkhdf"))
+        subprocess.run([program, sample], check=True)
+        subprocess.run([program, elsewhere, "elsewhere"], check=True)
+        code, answer = verdict(tool, sample, elsewhere)
+        if code or answer:
+            wrong.append(f"the same run on another machine: exit code {code}, {answer!r}")
         copy, text = os.path.join(folder, "copy.vtkhdf"), os.path.join(folder, "text")
         for about, change, words in CASES:
             shutil.copyfile(sample, copy)
@@ -86,7 +92,8 @@ def main(tool, sample):
             code, answer = verdict(tool, sample, other)
             if code != 2 or other not in answer or "Traceback" in answer:
                 wrong.append(f"{other}: exit code {code}, {answer!r}")
-    print("\n".join(wrong))
+    for line in wrong:
+        print(line)
     return 1 if wrong else 0
 
 

@@ -179,7 +179,8 @@ def by_vtk(name):
     with h5py.File(name, "r") as file:
         root = file["VTKHDF"]
         counts, first = root["NumberOfPoints"][()], root["Steps/PointOffsets"][()]
-        check(reader.GetNumberOfSteps() == len(counts), f"VTK sees {reader.GetNumberOfSteps()} steps")
+        steps = reader.GetNumberOfSteps()
+        check(steps == len(counts), f"VTK sees {steps} steps")
         for step, (n, start) in enumerate(zip(counts, first)):
             reader.SetStep(step)
             reader.Update()

@@ -42,8 +42,8 @@ static inline void check_ok(status result, int line)
 static inline void check_refused(status result, const char *words, int line)
 {
   if (result == ERR_USER && strstr(status_sentence(), words)) return;
-  print_error("line %d: status %d, '%s' does not hold '%s'\n", line, (int)result,
-              status_sentence(), words);
+  print_error("line %d: status %d, '%s' does not hold '%s'\n", line, (int)result, status_sentence(),
+              words);
   fail();
 }
 

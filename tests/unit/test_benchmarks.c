@@ -24,7 +24,8 @@ struct stage {
 static void set_param(struct stage *s, const char *name, double value)
 {
   const struct param *p = param_find(s->b->params, s->b->num_params, name);
-  if (p) *(real *)((char *)s->self + p->offset) = (real)value;
+  if (p)
+    *(real *)((char *)s->self + p->offset) = (real)value;
   else if ((p = param_find(scene_param_rows, num_scene_params, name)))
     *(double *)((char *)&s->scene.common + p->offset) = value;
   assert_non_null(p);
@@ -72,7 +73,10 @@ static void end(struct stage *s)
   free(s->self);
 }
 
-static int runs_here(const struct benchmark *b) { return (b->dims & (DIM == 2 ? CAN(2D) : CAN(3D))) != 0; }
+static int runs_here(const struct benchmark *b)
+{
+  return (b->dims & (DIM == 2 ? CAN(2D) : CAN(3D))) != 0;
+}
 static int no_truths(void) { return isnan(truth_patch_pressure(0, 0)); }
 
 /* Only its own metrics are measured, and every one of them in the end. */
@@ -169,8 +173,9 @@ static int read_outline(const char *name, double (*corner)[2], int most)
 
 static void test_patch_follows_the_outlines(void **state)
 {
-  static const char *const names[] = {"square_patch_outline_tw0p5.csv", "square_patch_outline_tw1p0.csv",
-                                      "square_patch_outline_tw1p5.csv", "square_patch_outline_tw2p0.csv"};
+  static const char *const names[] = {
+    "square_patch_outline_tw0p5.csv", "square_patch_outline_tw1p0.csv",
+    "square_patch_outline_tw1p5.csv", "square_patch_outline_tw2p0.csv"};
   static double corner[1024][2];
   (void)state;
   if (DIM == 3 || no_truths()) skip();

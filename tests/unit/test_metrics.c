@@ -39,8 +39,8 @@ static void test_names(void **state)
 
 /* --- distribution --- */
 
-/* The patch of the dual-particle paper: Eq. (20) as printed gives a perfect lattice 831.4; found with
- * an independent script, as was 463.6 for the coarse patch with the same support. */
+/* The patch of the dual-particle paper: Eq. (20) as printed gives a perfect lattice 831.4; found
+ * with an independent script, as was 463.6 for the coarse patch with the same support. */
 static void test_gamma_of_the_patch(void **state)
 {
   (void)state;
@@ -211,8 +211,10 @@ static void test_rigid_motion(void **state)
     b.v[i] = zero();
     b.v[i].c[0] = (real)(-omega * y);
     b.v[i].c[1] = (real)(omega * x);
-    if (DIM == 3) b.v[i].c[DIM - 1] = (real)u;
-    else b.v[i].c[0] += (real)u;
+    if (DIM == 3)
+      b.v[i].c[DIM - 1] = (real)u;
+    else
+      b.v[i].c[0] += (real)u;
     b.x[i].c[DIM - 1] += (real)0.25;
   }
   const struct measures out = measure(&now);

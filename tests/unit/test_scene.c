@@ -97,9 +97,12 @@ static void test_jitter_is_philox(void **state)
 {
   struct scene s = jittered(0, 1);
   (void)state;
-  /* known answer of philox4x32x10 for counter 0 and key 0 (Random123's kat_vectors): 6627e8d5 e169c58d */
-  near_to((double)s.x[0].c[0], 0.05 + 0.1 * (2 * (0x6627e8d5u + 0.5) / 4294967296.0 - 1), 1e-15, 1e-7);
-  near_to((double)s.x[0].c[1], 0.05 + 0.1 * (2 * (0xe169c58du + 0.5) / 4294967296.0 - 1), 1e-15, 1e-7);
+  /* known answer of philox4x32x10 for counter 0 and key 0 (Random123's kat_vectors): 6627e8d5
+   * e169c58d */
+  near_to((double)s.x[0].c[0], 0.05 + 0.1 * (2 * (0x6627e8d5u + 0.5) / 4294967296.0 - 1), 1e-15,
+          1e-7);
+  near_to((double)s.x[0].c[1], 0.05 + 0.1 * (2 * (0xe169c58du + 0.5) / 4294967296.0 - 1), 1e-15,
+          1e-7);
   scene_free(&s);
 }
 
@@ -144,6 +147,9 @@ static void test_check_finds_no_particle_and_nan(void **state)
   must(scene_wall_box(&s, zero(), all_axes(1), 1, 0));
   s.wall_x[2].c[0] = (real)NAN;
   refused(scene_check(&s), "wall particle 2");
+  s.wall_x[2].c[0] = -5;
+  s.v[4].c[1] = (real)INFINITY;
+  refused(scene_check(&s), "fluid particle 4 moves");
   scene_free(&s);
 }
 
@@ -155,7 +161,8 @@ static void test_check_finds_overlaps(void **state)
   (void)state;
   must(scene_fill_box(&s, all_axes(0.9), all_axes(1.2), zero(), NULL));
   scene_domain_around(&s, 0.5);
-  snprintf(words, sizeof words, "fluid particle %d and fluid particle %d are both at (0.95, ", n - 1, n);
+  snprintf(words, sizeof words, "fluid particle %d and fluid particle %d are both at (0.95, ",
+           n - 1, n);
   refused(scene_check(&s), words);
   scene_free(&s);
   s = block(); /* half a cell apart is no overlap that the check knows */
@@ -185,7 +192,8 @@ static void test_check_of_many_is_fast(void **state)
 {
   struct scene s = new_scene(0.001);
   (void)state; /* a check of all pairs would need 1e10 distances */
-  must(scene_fill_box(&s, zero(), DIM == 2 ? all_axes(0.3) : scene_at(0.045, 0.045, 0.045), zero(), NULL));
+  must(scene_fill_box(&s, zero(), DIM == 2 ? all_axes(0.3) : scene_at(0.045, 0.045, 0.045), zero(),
+                      NULL));
   scene_domain_around(&s, 0.01);
   must(scene_check(&s));
   scene_free(&s);
@@ -200,7 +208,10 @@ static double random_in(double low, double high)
   return low + (high - low) * (random_state >> 8) / 16777216.0;
 }
 
-static double wrapped(double x, double period) { return period > 0 ? x - period * round(x / period) : x; }
+static double wrapped(double x, double period)
+{
+  return period > 0 ? x - period * round(x / period) : x;
+}
 
 static int nearest_by_force(const vec *x, int n, vec at, vec period, double *distance)
 {

@@ -6,7 +6,7 @@ static void test_counts_are_robust_to_rounding(void **state)
   static const struct {
     double side, dx;
     int count;
-  } cases[] = {{0.24, 0.005, 48}, {0.24, 0.0075, 32}, {0.3, 0.1, 3},   {0.7, 0.01, 70},
+  } cases[] = {{0.24, 0.005, 48}, {0.24, 0.0075, 32}, {0.3, 0.1, 3},    {0.7, 0.01, 70},
                {1, 1. / 3, 3},    {0.35, 0.025, 14},  {1.6, 0.01, 160}, {0.0051, 0.0051, 1}};
   (void)state;
   for (int k = 0; k < COUNT(cases); k++) {
@@ -86,7 +86,8 @@ static void test_polygons_share_nothing(void **state)
   const int in_left = t.n;
   must(scene_fill_polygon(&t, right, 4, 0, 0.1, zero()));
   near_to(in_left, 0.55 * s.n, 0.02 * s.n, 0.02 * s.n);
-  assert_in_range(t.n, (int)(0.97 * s.n), (int)(1.03 * s.n)); /* the right one has its own lattice */
+  assert_in_range(t.n, (int)(0.97 * s.n),
+                  (int)(1.03 * s.n)); /* the right one has its own lattice */
   must(scene_fill_polygon(&u, star, 5, 0, 0.1, zero()));
   near_to(u.n, 0.75 * s.n, 0.03 * s.n, 0.03 * s.n);
   scene_free(&s);
@@ -98,7 +99,8 @@ static void test_polygon_edge_on_centres(void **state)
 {
   /* the common edge x = 0.25 runs through cell centres: one of the two has them, not both */
   static const double left[][2] = {{0, 0}, {0.25, 0}, {0.25, 1}, {0, 1}};
-  static const double right[][2] = {{0.25, 0}, {0.75, 0}, {0.75, 1}, {0, 1}, {0, 0.999}, {0.25, 0.999}};
+  static const double right[][2] = {{0.25, 0}, {0.75, 0},  {0.75, 1},
+                                    {0, 1},    {0, 0.999}, {0.25, 0.999}};
   struct scene s = new_scene(0.1);
   (void)state;
   must(scene_fill_polygon(&s, left, 4, 0, 0.1, zero()));

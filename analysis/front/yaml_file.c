@@ -1,4 +1,4 @@
-#include "yaml.h"
+#include "yaml_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,11 +67,11 @@ static status tell(const char *path, const char *text, struct complaint *c, cyam
 
 static cyaml_config_t configuration(struct complaint *c)
 {
-  return (cyaml_config_t){.log_fn = listen, .log_ctx = c, .log_level = CYAML_LOG_WARNING,
-                          .mem_fn = cyaml_mem};
+  return (cyaml_config_t){
+    .log_fn = listen, .log_ctx = c, .log_level = CYAML_LOG_WARNING, .mem_fn = cyaml_mem};
 }
 
-status yaml_read(const char *path, const cyaml_schema_value_t *schema, void **data)
+status yaml_file_read(const char *path, const cyaml_schema_value_t *schema, void **data)
 {
   struct complaint c = {.line = 0};
   const cyaml_config_t config = configuration(&c);
@@ -90,7 +90,7 @@ status yaml_read(const char *path, const cyaml_schema_value_t *schema, void **da
   return result;
 }
 
-void yaml_free(const cyaml_schema_value_t *schema, void *data)
+void yaml_file_free(const cyaml_schema_value_t *schema, void *data)
 {
   struct complaint unused = {.line = 0};
   const cyaml_config_t config = configuration(&unused);

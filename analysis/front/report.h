@@ -1,0 +1,38 @@
+/* report.h - the parts of the page that `sphbench report` writes. */
+#ifndef REPORT_H
+#define REPORT_H
+#include <jansson.h>
+#include "journal.h"
+
+/* A run as the journal has it last, with its facts. */
+struct report_run {
+  const struct journal_entry *entry;
+  json_t *facts; /* NULL: it has none */
+};
+
+struct report {
+  const char *results;
+  struct journal journal;
+  struct report_run *run;
+  int num_runs;
+  struct report_figure {
+    struct path folder; /* of its data */
+    json_t *facts;      /* figure.json */
+  } * figure;
+  int num_figures;
+};
+
+/* report_page.c: head with style and script; end. */
+void page_begin(FILE *page, const struct report *report);
+void page_end(FILE *page);
+
+/* report_figures.c: figures of frames, or the others. Pictures or data that are missing are said to
+ * be. */
+void page_figures(FILE *page, const struct report *report, int frames);
+
+/* report_tables.c */
+void page_metrics(FILE *page, const struct report *report);
+void page_compatibility(FILE *page, const struct report *report);
+void page_origin(FILE *page, const struct report *report);
+
+#endif

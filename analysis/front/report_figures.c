@@ -1,0 +1,186 @@
+/* Figures of the report, each with its caption, the command that makes it, and its data. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "report.h"
+
+enum { MOST_SVG = 700 * 1024 /* bytes: thousands of particles are lighter as PNG */ };
+
+static const char *text_in(const json_t *object, const char *key)
+{
+  const char *text = json_string_value(json_object_get(object, key));
+  return text ? text : "";
+}
+
+/* --- pictures --- */
+
+static void put_png(FILE *page, const struct report *r, const json_t *facts)
+{
+  const char *name = text_in(facts, "name");
+  const struct path path = path_of("%s/figures/%s.png", r->results, name);
+  char *png;
+  size_t size;
+  if (file_read(path.text, &png, &size) != OK) {
+    html_put(page, "<p class=gap>The picture %s is missing.</p>\n", path.text);
+    return;
+  }
+  html_put(page, "<img alt=\"%s\" src=\"data:image/png;base64,", text_in(facts, "about"));
+  html_base64(page, png, size);
+  fputs("\">\n", page);
+  free(png);
+}
+
+static void put_picture(FILE *page, const struct report *r, const json_t *facts)
+{
+  const char *name = text_in(facts, "name");
+  const struct path path = path_of("%s/figures/%s.svg", r->results, name);
+  char *svg = NULL;
+  size_t size = 0;
+  fputs("<div class=paper>", page);
+  if (file_read(path.text, &svg, &size) == OK && size <= MOST_SVG)
+    html_svg(page, svg, name);
+  else
+    put_png(page, r, facts);
+  fputs("</div>\n", page);
+  free(svg);
+}
+
+/* --- data --- */
+
+static void put_field(FILE *out, const char *text, size_t length)
+{
+  const int quote = memchr(text, ',', length) || memchr(text, '"', length);
+  if (quote) fputc('"', out);
+  for (size_t k = 0; k < length; k++) {
+    if (text[k] == '"') fputc('"', out);
+    fputc(text[k], out);
+  }
+  if (quote) fputc('"', out);
+}
+
+/* One line of a .dat file; fields are separated by tabs if there is one, else by blanks. */
+static void put_row(FILE *out, const char *series, char *line)
+{
+  const char *between = strchr(line, '\t') ? "\t" : " ";
+  put_field(out, series, strlen(series));
+  for (char *field; (field = strsep(&line, between));) {
+    fputc(',', out);
+    put_field(out, field, strlen(field));
+  }
+  fputc('\n', out);
+}
+
+static void put_file(FILE *out, const struct report_figure *figure, const json_t *file)
+{
+  const struct path path = path_of("%s/%s", figure->folder.text, text_in(file, "file"));
+  char *text;
+  size_t size;
+  if (file_read(path.text, &text, &size) != OK) return;
+  for (char *rest = text, *line; (line = strsep(&rest, "\n"));)
+    if (*line && *line != '#') put_row(out, text_in(file, "series"), line);
+  free(text);
+}
+
+static void put_head(FILE *out, const json_t *columns)
+{
+  size_t k;
+  json_t *column;
+  fputs("series", out);
+  json_array_foreach(columns, k, column)
+  {
+    const char *name = json_string_value(column);
+    fputc(',', out);
+    if (name) put_field(out, name, strlen(name));
+  }
+  fputc('\n', out);
+}
+
+/* All files that have the columns of file `first`, as one CSV link. */
+static void put_csv(FILE *page, const struct report_figure *figure, json_t *files, size_t first)
+{
+  json_t *columns = json_object_get(json_array_get(files, first), "columns");
+  const char *what = json_string_value(json_array_get(columns, json_array_size(columns) - 1));
+  char *csv = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&csv, &size);
+  if (!out) return;
+  put_head(out, columns);
+  for (size_t k = first; k < json_array_size(files); k++) {
+    const json_t *file = json_array_get(files, k);
+    if (json_equal(json_object_get(file, "columns"), columns)) put_file(out, figure, file);
+  }
+  fclose(out);
+  html_put(page, " <a download=\"%s-%s.csv\" href=\"data:text/csv;base64,",
+           text_in(figure->facts, "name"), text_in(json_array_get(files, first), "file"));
+  html_base64(page, csv, size);
+  html_put(page, "\">%s</a>", what);
+  free(csv);
+}
+
+static int seen_before(json_t *files, size_t k)
+{
+  json_t *columns = json_object_get(json_array_get(files, k), "columns");
+  for (size_t i = 0; i < k; i++)
+    if (json_equal(json_object_get(json_array_get(files, i), "columns"), columns)) return 1;
+  return 0;
+}
+
+static void put_data(FILE *page, const struct report_figure *figure)
+{
+  json_t *files = json_object_get(figure->facts, "files");
+  fputs("<span>Data (CSV):", page);
+  for (size_t k = 0; k < json_array_size(files); k++)
+    if (!seen_before(files, k)) put_csv(page, figure, files, k);
+  fputs("</span>", page);
+}
+
+/* A table as a table. */
+static void put_table(FILE *page, const struct report_figure *figure)
+{
+  const json_t *file = json_array_get(json_object_get(figure->facts, "files"), 0);
+  const struct path path = path_of("%s/%s", figure->folder.text, text_in(file, "file"));
+  char *text;
+  size_t size, k;
+  json_t *column;
+  if (file_read(path.text, &text, &size) != OK) return;
+  fputs("<div class=scroll><table class=sortable><thead><tr>", page);
+  json_array_foreach(json_object_get(file, "columns"), k, column)
+    html_put(page, "<th>%s</th>", json_string_value(column));
+  fputs("</tr></thead><tbody>\n", page);
+  for (char *rest = text, *line; (line = strsep(&rest, "\n"));) {
+    if (!*line || *line == '#') continue;
+    fputs("<tr>", page);
+    for (char *field; (field = strsep(&line, "\t"));) html_put(page, "<td>%s</td>", field);
+    fputs("</tr>\n", page);
+  }
+  fputs("</tbody></table></div>\n", page);
+  free(text);
+}
+
+static void put_figure(FILE *page, const struct report *r, const struct report_figure *figure)
+{
+  const json_t *facts = figure->facts;
+  html_put(page, "<figure id=\"%s\">\n<h3>%s</h3>\n", text_in(facts, "name"),
+           text_in(facts, "about"));
+  if (strcmp(text_in(facts, "kind"), "table") == 0)
+    put_table(page, figure);
+  else
+    put_picture(page, r, facts);
+  html_put(page, "<figcaption>%s</figcaption>\n<p class=origin><code>sphbench figure %s</code> ",
+           text_in(facts, "statement"), text_in(facts, "name"));
+  put_data(page, figure);
+  fputs("</p>\n</figure>\n", page);
+}
+
+void page_figures(FILE *page, const struct report *r, int frames)
+{
+  int n = 0;
+  for (int k = 0; k < r->num_figures; k++) {
+    const int is_frames = strcmp(text_in(r->figure[k].facts, "kind"), "frames") == 0;
+    if (is_frames != frames) continue;
+    if (n++ == 0)
+      fputs(frames ? "<h2 id=gallery>Gallery</h2>\n" : "<h2 id=figures>Figures</h2>\n", page);
+    put_figure(page, r, &r->figure[k]);
+  }
+}

@@ -1,0 +1,7 @@
+width = 860; height = 480
+load shared.'style.gp'
+load 'contents.gp'
+load shared.'curves.gp'
+set logscale y
+set format y '10^{%L}'
+plot for [k = 1:n] file[k] using 1:2 with lines lt colour[k] title title[k]
