@@ -40,6 +40,14 @@ const char *clock_phase_name(enum phase phase)
   return names[phase];
 }
 
+const char *clock_phase_about(enum phase phase)
+{
+#define P(name, text, about) about,
+  static const char *const texts[] = {PHASE_LIST(P)};
+#undef P
+  return texts[phase];
+}
+
 void clock_reset(void)
 {
   memset(phase_seconds, 0, sizeof phase_seconds);

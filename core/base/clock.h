@@ -29,6 +29,7 @@ extern void (*clock_settle)(void);
 /* Seconds spent in each phase so far [NUM_PHASES], and their names. */
 void clock_phases(double seconds[NUM_PHASES]);
 const char *clock_phase_name(enum phase phase);
+const char *clock_phase_about(enum phase phase);
 void clock_reset(void);
 
 /* One per sweep in the source text, static, linked on its first use. */

@@ -1,16 +1,19 @@
-/* compress.h - keep some lanes and close the gaps: what turns LANES distance tests into list entries.
+/* compress.h - keep some lanes and close the gaps: what turns LANES distance tests into list
+ * entries.
  *
- * `bits` has one bit per lane. Up to LANES elements are written at `to`, of which the first (number of bits) count. */
+ * `bits` has one bit per lane. Up to LANES elements are written at `to`, of which the first (number
+ * of bits) count. */
 #ifndef COMPRESS_H
 #define COMPRESS_H
 #include <string.h>
 #include "pairs.h"
 
 /* LANES reals or ints anywhere in memory */
-typedef real loose_lanes __attribute__((vector_size(LANES_BYTES), aligned(sizeof(real)), may_alias));
+typedef real loose_lanes
+  __attribute__((vector_size(LANES_BYTES), aligned(sizeof(real)), may_alias));
 typedef int index_lanes __attribute__((vector_size(LANES_BYTES / sizeof(real) * sizeof(int))));
 typedef int loose_index_lanes
-    __attribute__((vector_size(LANES_BYTES / sizeof(real) * sizeof(int)), aligned(4), may_alias));
+  __attribute__((vector_size(LANES_BYTES / sizeof(real) * sizeof(int)), aligned(4), may_alias));
 #ifdef REAL_IS_FLOAT
 #define INDEX_NUMBERS ((index_lanes){0, 1, 2, 3, 4, 5, 6, 7})
 #else
@@ -19,7 +22,8 @@ typedef int loose_index_lanes
 
 #if defined(__AVX2__) && !defined(PLAIN_SEARCH)
 
-/* Where each lane comes from, as 8 numbers of 32-bit pieces: bytes, so that all fit in 2 KiB of the first cache. */
+/* Where each lane comes from, as 8 numbers of 32-bit pieces: bytes, so that all fit in 2 KiB of the
+ * first cache. */
 struct compressor {
   unsigned char pieces[1 << LANES][8];
 #ifndef REAL_IS_FLOAT

@@ -22,8 +22,8 @@ static int is_prime(int n)
   return n > 1;
 }
 
-/* The largest prime up to `most` that no axis has yet. A line of particles along any direction of the lattice then
- * meets as many cells as it can before it meets one again. */
+/* The largest prime up to `most` that no axis has yet. A line of particles along any direction of
+ * the lattice then meets as many cells as it can before it meets one again. */
 static int new_prime(int most, const int cells[DIM])
 {
   for (int n = most; n > 2; n--) {
@@ -34,7 +34,8 @@ static int new_prime(int most, const int cells[DIM])
   return 2;
 }
 
-/* Axes that want few cells get them; the others share what is left alike. Returns the axes that got less, as bits. */
+/* Axes that want few cells get them; the others share what is left alike. Returns the axes that got
+ * less, as bits. */
 static int share_cells(const double want[DIM], double budget, int cells[DIM])
 {
   int done = 0, cut = 0;
@@ -74,9 +75,11 @@ status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, 
     const double R = (double)support, P = periodic ? (double)period.c[d] : R;
     if (periodic && P < 2 * R)
       return user_error("the period of %g m along %c is shorter than two support radii of %g m, "
-                        "so that a particle would meet two images of another", P, "xyz"[d], R);
+                        "so that a particle would meet two images of another",
+                        P, "xyz"[d], R);
     grid->wraps |= periodic << d;
-    /* a little more than R, since cells and distances are rounded, across a period by its last digit */
+    /* a little more than R, since cells and distances are rounded, across a period by its last
+     * digit */
     side[d] = R * (1 + 1e-6 + 4 * ROUNDING * P / R);
     want[d] = cells_wanted(periodic ? P : (double)high.c[d] - (double)low.c[d], side[d], periodic);
   }
@@ -89,7 +92,8 @@ status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, 
     const double turns = floor(want[d] / grid->cells[d]);
     if (period.c[d] > 0) side[d] = (double)period.c[d] / (turns * grid->cells[d]);
     /* 1e30 away from a corner, all particles but one would be in the same cell */
-    else if (cut >> d & 1) grid->low.c[d] = smaller(larger(0, low.c[d]), high.c[d]);
+    else if (cut >> d & 1)
+      grid->low.c[d] = smaller(larger(0, low.c[d]), high.c[d]);
     grid->inv_side.c[d] = (real)(1 / side[d]);
     grid->num_cells *= grid->cells[d];
   }
@@ -98,7 +102,8 @@ status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, 
   return OK;
 }
 
-/* Least and most are exact in any order, so the reduction gives the same bits for any number of threads. */
+/* Least and most are exact in any order, so the reduction gives the same bits for any number of
+ * threads. */
 int positions_bounds(const vec *x, int n, vec *low, vec *high)
 {
   int bad = 0;

@@ -1,4 +1,5 @@
-/* Sets of whole numbers. Most keys come many times, so that repetitions go first, by hashing, and sorting has little left to do. */
+/* Sets of whole numbers. Most keys come many times, so that repetitions go first, by hashing, and
+ * sorting has little left to do. */
 #include "neighbours.h"
 
 #include <limits.h>
@@ -49,7 +50,8 @@ static int met_add(struct met *met, key k)
   if (met->place[at] == k) return 0; /* NONE too: it meets an empty place */
   met->place[at] = k;
   met->num++;
-  if (2 * (size_t)met->num > (size_t)1 << met->log_size && !met_grow(met, met->log_size + 2)) return -1;
+  if (2 * (size_t)met->num > (size_t)1 << met->log_size && !met_grow(met, met->log_size + 2))
+    return -1;
   return 1;
 }
 
@@ -70,7 +72,8 @@ static int drop_repeated(key *keys, int n)
 static int sort_keys(key *keys, int n)
 {
   enum { BITS = 11, SIZE = 1 << BITS };
-  key *from = keys, *to = (key *)malloc(sizeof(key) * ((size_t)n + 1)), *const room = to, differ = 0;
+  key *from = keys, *to = (key *)malloc(sizeof(key) * ((size_t)n + 1)), *const room = to,
+      differ = 0;
   if (!room) return 0;
   for (int i = 1; i < n; i++) differ |= keys[i] ^ keys[0];
   for (int shift = 0; shift < 64; shift += BITS) {

@@ -1,9 +1,11 @@
-/* neighbours.h - cell grid, spatial sort and pair lists between any two sets of particles, in open and periodic domains.
+/* neighbours.h - cell grid, spatial sort and pair lists between any two sets of particles, in open
+ * and periodic domains.
  *
- * One grid serves all sets of a step. Cells have the side of the support radius, or a little more. Particles beyond the grid's
- * box belong to its border cells; on an axis that wraps (periodic, or cut because the box would need too many cells) they are
- * folded into it. Both are right for any position, since neither moves two cells further apart, only slower.
- * A set must be in the grid's cell order (last axis fastest) before it is listed. */
+ * One grid serves all sets of a step. Cells have the side of the support radius, or a little more.
+ * Particles beyond the grid's box belong to its border cells; on an axis that wraps (periodic, or
+ * cut because the box would need too many cells) they are folded into it. Both are right for any
+ * position, since neither moves two cells further apart, only slower. A set must be in the grid's
+ * cell order (last axis fastest) before it is listed. */
 #ifndef NEIGHBOURS_H
 #define NEIGHBOURS_H
 #include "../base/status.h"
@@ -13,16 +15,19 @@ extern "C" {
 #endif
 
 struct grid {
-  vec low;           /* corner of the cell (0, .., 0) [m]; where the box is cut, the place in it nearest to the origin */
-  vec inv_side;      /* 1 / side of a cell per axis [1/m]; a period is a multiple of all cells' sides together */
+  vec low; /* corner of the cell (0, .., 0) [m]; where the box is cut, the place in it nearest to
+              the origin */
+  vec inv_side; /* 1 / side of a cell per axis [1/m]; a period is a multiple of all cells' sides
+                   together */
   int cells[DIM];
-  int num_cells;     /* product of cells */
-  int wraps;         /* bit d: the last cell of axis d is followed by its first */
-  vec period;        /* 0 where open */
-  real support;      /* search radius R [m] */
+  int num_cells; /* product of cells */
+  int wraps;     /* bit d: the last cell of axis d is followed by its first */
+  vec period;    /* 0 where open */
+  real support;  /* search radius R [m] */
 };
 
-/* The cell of x along axis d; 0 where x is not a number. In double, so that a float far from `low` is not a cell off. */
+/* The cell of x along axis d; 0 where x is not a number. In double, so that a float far from `low`
+ * is not a cell off. */
 STAGE int grid_cell(const struct grid *grid, vec x, int d)
 {
   const double cells = grid->cells[d];
@@ -35,8 +40,8 @@ STAGE int grid_cell(const struct grid *grid, vec x, int d)
   return folded > 0 && folded < cells ? (int)folded : 0;
 }
 
-/* The cell of particle i at x, in cell order. Particles that are not finite have no neighbours and are dealt out over all
- * cells, so that many of them cost nothing. */
+/* The cell of particle i at x, in cell order. Particles that are not finite have no neighbours and
+ * are dealt out over all cells, so that many of them cost nothing. */
 STAGE int grid_cell_of(const struct grid *grid, vec x, int i)
 {
   int cell = 0, finite = 1;
@@ -76,7 +81,8 @@ STAGE struct stretches grid_near(const struct grid *grid, int d, int c, int reac
   return near;
 }
 
-/* Is there a particle of the set with these cells (first: [num_cells + 1]) in the cells up to `reach` away from that of x? */
+/* Is there a particle of the set with these cells (first: [num_cells + 1]) in the cells up to
+ * `reach` away from that of x? */
 STAGE int grid_occupied(const struct grid *grid, const int *first, vec x, int reach)
 {
   struct stretches near[3] = {{1, {0, 0}, {0, 0}}};
@@ -97,13 +103,14 @@ STAGE int grid_occupied(const struct grid *grid, const int *first, vec x, int re
 struct cell_set {
   const vec *x;
   int n;
-  int *first;        /* owned; NULL before the first sort */
-  int capacity;      /* of first */
-  int *work;         /* of the sort, reused */
+  int *first;   /* owned; NULL before the first sort */
+  int capacity; /* of first */
+  int *work;    /* of the sort, reused */
   size_t work_capacity;
 };
 
-/* A pair list and the memory behind it; list.list, first, last belong to it. Zero-initialise before first use. */
+/* A pair list and the memory behind it; list.list, first, last belong to it. Zero-initialise before
+ * first use. */
 struct pair_list {
   struct pairs pairs;
   int *first, *last, *list;
@@ -111,43 +118,49 @@ struct pair_list {
   struct pair_scratch *scratch; /* of the search, reused */
 };
 
-/* A grid for particles in the box [low, high] (a finite bounding box of all sets). On a periodic axis the box is
- * [low, low + period). At most about 4 cells per particle of `n` + 4096: a box that needs more (a few particles far away) is cut
- * and wraps. Errors: ERR_USER where a period is shorter than 2 support, since a particle would meet two images of another. */
+/* A grid for particles in the box [low, high] (a finite bounding box of all sets). On a periodic
+ * axis the box is [low, low + period). At most about 4 cells per particle of `n` + 4096: a box that
+ * needs more (a few particles far away) is cut and wraps. Errors: ERR_USER where a period is
+ * shorter than 2 support, since a particle would meet two images of another. */
 status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, int n);
 
-/* Bounding box of finite positions; returns the number of particles that are not finite (their box is ignored). */
+/* Bounding box of finite positions; returns the number of particles that are not finite (their box
+ * is ignored). */
 int positions_bounds(const vec *x, int n, vec *low, vec *high);
 
-/* order[k] = index of the particle that comes k-th in cell order (stable: equal cells keep their order) [n]; sets
- * set->first, set->n. x are the unsorted positions. Errors: ERR_MEMORY. */
+/* order[k] = index of the particle that comes k-th in cell order (stable: equal cells keep their
+ * order) [n]; sets set->first, set->n. x are the unsorted positions. Errors: ERR_MEMORY. */
 status cell_sort(struct cell_set *set, const struct grid *grid, const vec *x, int n, int *order);
 
 /* to[k] = from[order[k]], elements of `bytes` bytes; parallel. */
 void permute(void *to, const void *from, const int *order, int n, size_t bytes);
 
-/* List for each particle i of `from` every j of the `num_to` sets in `to` with |x_i - x_j| < grid->support: rows [from->n],
- * indices offset[s] + position in to[s]. A particle is its own neighbour (r = 0). Row order: sets in turn, cells in
- * ascending order, ascending index in a cell: the same for any number of threads. Appends to rows from row_offset on (0 to
- * start a new list), so that several sets may have rows in one list. Fills list->pairs (first, last, list, rows, slots,
- * period, periodic); the caller sets xi, xj and kernel. Errors: ERR_MEMORY. */
-status pairs_build(struct pair_list *list, const struct grid *grid, const struct cell_set *from, int row_offset,
-                   const struct cell_set *to, const int *offset, int num_to);
+/* List for each particle i of `from` every j of the `num_to` sets in `to` with |x_i - x_j| <
+ * grid->support: rows [from->n], indices offset[s] + position in to[s]. A particle is its own
+ * neighbour (r = 0). Row order: sets in turn, cells in ascending order, ascending index in a cell:
+ * the same for any number of threads. Appends to rows from row_offset on (0 to start a new list),
+ * so that several sets may have rows in one list. Fills list->pairs (first, last, list, rows,
+ * slots, period, periodic); the caller sets xi, xj and kernel. Errors: ERR_MEMORY. */
+status pairs_build(struct pair_list *list, const struct grid *grid, const struct cell_set *from,
+                   int row_offset, const struct cell_set *to, const int *offset, int num_to);
 
-/* Sort keys, drop repeated ones and the key ~0 (none); returns how many remain. Errors: -1 on no memory. */
+/* Sort keys, drop repeated ones and the key ~0 (none); returns how many remain. Errors: -1 on no
+ * memory. */
 int keys_unique(unsigned long long *keys, int n);
 
 void pair_list_free(struct pair_list *list);
 void cell_set_free(struct cell_set *set);
 
-/* The same operations where the particles live: these functions on the host, kernels in the CUDA variants. Metrics use the
- * host's on their snapshots in every variant. */
+/* The same operations where the particles live: these functions on the host, kernels in the CUDA
+ * variants. Metrics use the host's on their snapshots in every variant. */
 struct search {
   int (*positions_bounds)(const vec *x, int n, vec *low, vec *high);
-  status (*cell_sort)(struct cell_set *set, const struct grid *grid, const vec *x, int n, int *order);
+  status (*cell_sort)(struct cell_set *set, const struct grid *grid, const vec *x, int n,
+                      int *order);
   void (*permute)(void *to, const void *from, const int *order, int n, size_t bytes);
-  status (*pairs_build)(struct pair_list *list, const struct grid *grid, const struct cell_set *from, int row_offset,
-                        const struct cell_set *to, const int *offset, int num_to);
+  status (*pairs_build)(struct pair_list *list, const struct grid *grid,
+                        const struct cell_set *from, int row_offset, const struct cell_set *to,
+                        const int *offset, int num_to);
   int (*keys_unique)(unsigned long long *keys, int n);
   void (*pair_list_free)(struct pair_list *list);
   void (*cell_set_free)(struct cell_set *set);

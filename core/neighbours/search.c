@@ -1,7 +1,7 @@
-/* Pair lists. The candidates of a cell, that is the particles around it that are near enough to the box of its own particles,
- * are copied once and side by side; then each particle of the cell tests LANES of them at a time. Compiled without contraction
- * of products and sums, so that one and the same expression decides for (i, j) and for (j, i), in every lane and on every
- * path. */
+/* Pair lists. The candidates of a cell, that is the particles around it that are near enough to the
+ * box of its own particles, are copied once and side by side; then each particle of the cell tests
+ * LANES of them at a time. Compiled without contraction of products and sums, so that one and the
+ * same expression decides for (i, j) and for (j, i), in every lane and on every path. */
 #include "neighbours.h"
 
 #include <assert.h>
@@ -19,10 +19,10 @@ enum {
 
 /* What one thread works with. */
 struct worker {
-  real *c[DIM];         /* candidates' coordinates [capacity] */
-  int *index;           /* and numbers in the list */
+  real *c[DIM]; /* candidates' coordinates [capacity] */
+  int *index;   /* and numbers in the list */
   int num, capacity;
-  int *slots;           /* rows of a chunk */
+  int *slots; /* rows of a chunk */
   size_t used, slot_capacity;
   int failed;
 };
@@ -30,7 +30,7 @@ struct worker {
 struct pair_scratch {
   struct worker *workers;
   int num_workers;
-  real *axes;           /* coordinates of the listed sets, axis by axis */
+  real *axes; /* coordinates of the listed sets, axis by axis */
   size_t axes_capacity;
   struct compressor compressor;
 };
@@ -48,7 +48,7 @@ struct job {
   const struct cell_set *from;
   struct listed to[MAX_SETS];
   int num_to, row_offset;
-  int images;         /* bit d: on axis d some particle lies outside the period's box */
+  int images; /* bit d: on axis d some particle lies outside the period's box */
   struct pair_list *list;
   struct pair_scratch *scratch;
 };
@@ -90,8 +90,9 @@ static int reserve_slots(struct worker *w, size_t more)
 
 STAGE lanes load(const real *a) { return (lanes) * (const loose_lanes *)a; }
 
-/* Copy the particles [begin, end) of a set that are within the support of the box. Rounding is monotonic, so that no sum of
- * squares below is larger than that of a pair with a particle in the box: none is missed. */
+/* Copy the particles [begin, end) of a set that are within the support of the box. Rounding is
+ * monotonic, so that no sum of squares below is larger than that of a pair with a particle in the
+ * box: none is missed. */
 static int collect(const struct job *job, struct worker *w, const struct listed *set, int begin,
                    int end, const struct box *box)
 {
@@ -103,9 +104,8 @@ static int collect(const struct job *job, struct worker *w, const struct listed 
     lanes x[DIM], far = NO_LANES;
     for (int d = 0; d < DIM; d++) {
       x[d] = load(set->c[d] + j);
-      const lanes gap =
-          positive(box->low.c[d] - x[d], box->low.c[d] - x[d]) +
-          positive(x[d] - box->high.c[d], x[d] - box->high.c[d]);
+      const lanes gap = positive(box->low.c[d] - x[d], box->low.c[d] - x[d]) +
+                        positive(x[d] - box->high.c[d], x[d] - box->high.c[d]);
       far = d == 0 ? gap * gap : far + gap * gap;
     }
     const int left = end - j, all = left < LANES ? (1 << left) - 1 : (1 << LANES) - 1;
@@ -230,8 +230,10 @@ static int cell_from(const struct job *job, int i)
   int low = 0, high = job->grid->num_cells;
   while (low < high) {
     const int middle = low + (high - low) / 2;
-    if (job->from->first[middle] < i) low = middle + 1;
-    else high = middle;
+    if (job->from->first[middle] < i)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low;
 }
@@ -260,8 +262,8 @@ static void place_chunk(const struct job *job, const struct worker *w, int chunk
   }
 }
 
-/* List all chunks, one after the other from slot `begin` on, as far as there is room; returns the end that they need, -1 where
- * memory ran out. */
+/* List all chunks, one after the other from slot `begin` on, as far as there is room; returns the
+ * end that they need, -1 where memory ran out. */
 static long long list_chunks(const struct job *job, int begin)
 {
   const int chunks = (job->from->n + CHUNK - 1) / CHUNK, room = job->list->slot_capacity - LANES;
@@ -285,7 +287,8 @@ static long long list_chunks(const struct job *job, int begin)
 
 static status reserve_list(struct pair_list *list, long long slots)
 {
-  if (slots > INT_MAX) return status_set(ERR_MEMORY, "a pair list of %lld pairs is too long", slots);
+  if (slots > INT_MAX)
+    return status_set(ERR_MEMORY, "a pair list of %lld pairs is too long", slots);
   if (slots <= list->slot_capacity) return OK;
   int *more = (int *)realloc(list->list, sizeof(int) * (size_t)slots);
   if (!more) return status_set(ERR_MEMORY, "no memory for a pair list of %lld pairs", slots);
@@ -330,7 +333,8 @@ static status reserve_scratch(struct pair_list *list, size_t reals)
   struct pair_scratch *scratch = list->scratch;
   if (scratch->num_workers < omp_get_max_threads()) {
     free_workers(scratch);
-    scratch->workers = (struct worker *)calloc((size_t)omp_get_max_threads(), sizeof(struct worker));
+    scratch->workers =
+      (struct worker *)calloc((size_t)omp_get_max_threads(), sizeof(struct worker));
     if (!scratch->workers) return status_set(ERR_MEMORY, "no memory for the neighbour search");
     scratch->num_workers = omp_get_max_threads();
   }
@@ -347,7 +351,8 @@ static status reserve_scratch(struct pair_list *list, size_t reals)
   return OK;
 }
 
-/* The coordinates of a set, axis by axis, with LANES spare ones after each axis; returns the next free place. */
+/* The coordinates of a set, axis by axis, with LANES spare ones after each axis; returns the next
+ * free place. */
 static real *split_axes(struct listed *listed, const struct cell_set *set, real *free_axes)
 {
   const int n = set->n;
@@ -364,7 +369,8 @@ static real *split_axes(struct listed *listed, const struct cell_set *set, real 
   return free_axes + DIM * ((size_t)n + LANES);
 }
 
-/* Axes with a period on which images must be looked for in every cell, and not only at the seam, as bits. */
+/* Axes with a period on which images must be looked for in every cell, and not only at the seam, as
+ * bits. */
 static int images_everywhere(const struct grid *grid, const struct cell_set *set)
 {
   int axes = 0;
@@ -387,7 +393,8 @@ status pairs_build(struct pair_list *list, const struct grid *grid, const struct
   assert(num_to <= MAX_SETS && (row_offset == 0 || row_offset == list->pairs.rows));
   assert(from->first[grid->num_cells] == from->n);
   const int begin = row_offset > 0 ? list->pairs.slots : 0;
-  struct job job = {.grid = grid, .from = from, .num_to = num_to, .row_offset = row_offset, .list = list};
+  struct job job = {
+    .grid = grid, .from = from, .num_to = num_to, .row_offset = row_offset, .list = list};
   size_t reals = 0;
   for (int s = 0; s < num_to; s++) reals += DIM * ((size_t)to[s].n + LANES);
   TRY(reserve_scratch(list, reals));

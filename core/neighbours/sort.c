@@ -7,8 +7,8 @@
 
 #define GRAIN 8192 /* particles per thread, below which it costs more than it saves */
 
-/* The particles are counted and dealt out in `parts` stretches at a time, each with its own counters; the order that results
- * does not depend on their number. */
+/* The particles are counted and dealt out in `parts` stretches at a time, each with its own
+ * counters; the order that results does not depend on their number. */
 struct sort {
   int n, num_cells, parts;
   int *key;   /* cell of each particle [n] */
@@ -19,7 +19,8 @@ static int parts_for(int n, int num_cells)
 {
   int parts = n / GRAIN;
   if (parts > omp_get_max_threads()) parts = omp_get_max_threads();
-  while (parts > 1 && (long long)parts * num_cells > n) parts--; /* counters are walked by one thread */
+  while (parts > 1 && (long long)parts * num_cells > n)
+    parts--; /* counters are walked by one thread */
   return parts > 1 ? parts : 1;
 }
 
@@ -39,7 +40,8 @@ static status reserve(struct cell_set *set, const struct sort *s)
     if (!set->work) set->work_capacity = 0;
   }
   if (!set->first || !set->work)
-    return status_set(ERR_MEMORY, "no memory to sort %d particles into %d cells", s->n, s->num_cells);
+    return status_set(ERR_MEMORY, "no memory to sort %d particles into %d cells", s->n,
+                      s->num_cells);
   return OK;
 }
 
@@ -110,12 +112,12 @@ void permute(void *to, const void *from, const int *order, int n, size_t bytes)
   char *a = (char *)to;
   const char *b = (const char *)from;
   switch (bytes) {
-    case 4: permute_sized(a, b, order, n, 4); break;
-    case 8: permute_sized(a, b, order, n, 8); break;
-    case 12: permute_sized(a, b, order, n, 12); break;
-    case 16: permute_sized(a, b, order, n, 16); break;
-    case 24: permute_sized(a, b, order, n, 24); break;
-    default: permute_sized(a, b, order, n, bytes);
+  case 4: permute_sized(a, b, order, n, 4); break;
+  case 8: permute_sized(a, b, order, n, 8); break;
+  case 12: permute_sized(a, b, order, n, 12); break;
+  case 16: permute_sized(a, b, order, n, 16); break;
+  case 24: permute_sized(a, b, order, n, 24); break;
+  default: permute_sized(a, b, order, n, bytes);
   }
 }
 

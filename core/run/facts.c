@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "../scene/scene_file.h"
+
 /* Does this scene report the metric? The general ones always, a scene's own only if it measures them. */
 static int reported(const struct plan *plan, int metric)
 {
@@ -16,7 +18,7 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
   memset(f, 0, sizeof *f);
   provenance_fill(&f->provenance, threads, o->argc, (const char *const *)o->argv);
   f->run.provenance = &f->provenance;
-  f->run.scene = o->name;
+  f->run.scene = plan->setting.benchmark ? o->name : scene_file_name(plan->setting.file);
   f->run.solver = run->solver->name;
   f->run.variant = SPHBENCH_VARIANT;
   f->run.dim = DIM;
@@ -96,7 +98,7 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run, 
   double phase[NUM_PHASES];
   clock_phases(phase);
   for (int k = 0; k < NUM_PHASES; k++)
-    f->phases[k] = (struct fact){clock_phase_name((enum phase)k), "s", "", phase[k], NULL};
+    f->phases[k] = (struct fact){clock_phase_name((enum phase)k), "s", clock_phase_about((enum phase)k), phase[k], NULL};
   f->run.timing.phases = f->phases;
   f->run.timing.num_phases = NUM_PHASES;
   const double work = seconds - phase[PHASE_METRICS] - phase[PHASE_OUTPUT];

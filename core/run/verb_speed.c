@@ -12,7 +12,7 @@
 #include "driver.h"
 #include "facts.h"
 
-enum { DEFAULT_PARTICLES = 50000, STEPS = 10, ROUNDS = 5, FEW = 2, MANY = 6 };
+enum { DEFAULT_PARTICLES = 50000, STEPS = 10, ROUNDS = 5, FEW = 2, MANY = 12 };
 #define SUPPORT 2.0 /* dx: four particle radii */
 
 struct speed_case {

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../base/yaml_file.h"
+#include "../base/yaml_source.h"
 #include "scene_schema.h"
 
 struct scene_file {
-  struct yaml_file *yaml;
+  struct yaml_source *yaml;
   struct file_scene *said;
   char *name;
   struct scene_params values; /* of the params that the file gives */
@@ -34,8 +34,8 @@ static status check_vector(const struct scene_file *f, const char *key, const ch
   char place[KEY_ROOM + 32];
   snprintf(place, sizeof place, "%s%s%s", key, *key ? "." : "", name);
   if ((int)count == f->said->dim) return OK;
-  return yaml_file_refuse(f->yaml, place, "%s has %u entries, allowed are %d as dim is %d", place,
-                          count, f->said->dim, f->said->dim);
+  return yaml_source_refuse(f->yaml, place, "%s has %u entries, allowed are %d as dim is %d", place,
+                            count, f->said->dim, f->said->dim);
 }
 
 static status check_box(const struct scene_file *f, const char *key, const struct file_box *b)
@@ -44,9 +44,9 @@ static status check_box(const struct scene_file *f, const char *key, const struc
   TRY(check_vector(f, key, "high", b->high_count));
   for (int d = 0; d < f->said->dim; d++)
     if (!(b->high[d] > b->low[d]))
-      return yaml_file_refuse(f->yaml, key,
-                              "%s.high is %g on axis %d, allowed is more than low, %g", key,
-                              b->high[d], d + 1, b->low[d]);
+      return yaml_source_refuse(f->yaml, key,
+                                "%s.high is %g on axis %d, allowed is more than low, %g", key,
+                                b->high[d], d + 1, b->low[d]);
   return OK;
 }
 
@@ -54,19 +54,21 @@ static status check_ball(const struct scene_file *f, const char *key, const stru
 {
   TRY(check_vector(f, key, "centre", b->centre_count));
   if (b->radius > 0) return OK;
-  return yaml_file_refuse(f->yaml, key, "%s.radius is %g, allowed is more than 0", key, b->radius);
+  return yaml_source_refuse(f->yaml, key, "%s.radius is %g, allowed is more than 0", key,
+                            b->radius);
 }
 
 static status check_polygon(const struct scene_file *f, const char *key,
                             const struct file_polygon *p)
 {
   if (f->said->dim == 2)
-    return p->z ? yaml_file_refuse(f->yaml, key, "%s.z is given, allowed only where dim is 3", key)
-                : OK;
-  if (!p->z) return yaml_file_refuse(f->yaml, key, "%s has no key 'z', the two ends in 3-D", key);
+    return p->z
+             ? yaml_source_refuse(f->yaml, key, "%s.z is given, allowed only where dim is 3", key)
+             : OK;
+  if (!p->z) return yaml_source_refuse(f->yaml, key, "%s has no key 'z', the two ends in 3-D", key);
   if (p->z[1] > p->z[0]) return OK;
-  return yaml_file_refuse(f->yaml, key, "%s.z ends at %g, allowed is more than its start, %g", key,
-                          p->z[1], p->z[0]);
+  return yaml_source_refuse(f->yaml, key, "%s.z ends at %g, allowed is more than its start, %g",
+                            key, p->z[1], p->z[0]);
 }
 
 static status check_motion(const struct scene_file *f, const char *key, const struct file_shape *s)
@@ -85,14 +87,14 @@ static status check_shape(const struct scene_file *f, unsigned k)
   char key[KEY_ROOM];
   key_of(key, "fluid", k, "");
   if (shapes != 1)
-    return yaml_file_refuse(
+    return yaml_source_refuse(
       f->yaml, key, "%s has %d shapes, allowed is one of box, disc, ball, polygon", key, shapes);
   TRY(check_motion(f, key, s));
   key_of(key, "fluid", k, s->box ? ".box" : s->disc ? ".disc" : s->ball ? ".ball" : ".polygon");
   if (s->disc && f->said->dim == 3)
-    return yaml_file_refuse(f->yaml, key, "%s is given, allowed in 3-D is ball", key);
+    return yaml_source_refuse(f->yaml, key, "%s is given, allowed in 3-D is ball", key);
   if (s->ball && f->said->dim == 2)
-    return yaml_file_refuse(f->yaml, key, "%s is given, allowed in 2-D is disc", key);
+    return yaml_source_refuse(f->yaml, key, "%s is given, allowed in 2-D is disc", key);
   if (s->box) return check_box(f, key, s->box);
   if (s->polygon) return check_polygon(f, key, s->polygon);
   return check_ball(f, key, s->disc ? s->disc : s->ball);
@@ -107,8 +109,8 @@ static status check_wall(const struct scene_file *f, unsigned k)
   TRY(check_box(f, key, &box));
   if (!b->layers || (*b->layers >= 1 && *b->layers <= MOST_LAYERS)) return OK;
   key_of(key, "walls", k, ".box.layers");
-  return yaml_file_refuse(f->yaml, key, "%s is %d, allowed are 1 to %d", key, *b->layers,
-                          MOST_LAYERS);
+  return yaml_source_refuse(f->yaml, key, "%s is %d, allowed are 1 to %d", key, *b->layers,
+                            MOST_LAYERS);
 }
 
 static status check_domain(const struct scene_file *f)
@@ -122,9 +124,10 @@ static status check_domain(const struct scene_file *f)
   for (int k = 0; k < f->said->dim; k++) {
     const double side = d->high[k] - d->low[k];
     if (d->period[k] != 0 && !(fabs(d->period[k] - side) <= 1e-9 * side))
-      return yaml_file_refuse(f->yaml, "domain.period",
-                              "domain.period is %g on axis %d, allowed is 0 (open) or the side, %g",
-                              d->period[k], k + 1, side);
+      return yaml_source_refuse(
+        f->yaml, "domain.period",
+        "domain.period is %g on axis %d, allowed is 0 (open) or the side, %g", d->period[k], k + 1,
+        side);
   }
   return OK;
 }
@@ -151,13 +154,13 @@ static status take_gravity(struct scene_file *f)
   if (!s->gravity) return OK;
   TRY(check_vector(f, "", "gravity", s->gravity_count));
   if (s->params && s->params->gravity)
-    return yaml_file_refuse(f->yaml, "gravity",
-                            "gravity is given here and in params, allowed is one");
+    return yaml_source_refuse(f->yaml, "gravity",
+                              "gravity is given here and in params, allowed is one");
   f->values.gravity = length_of(s->gravity, s->gravity_count);
   f->given |= 1u << (row - scene_param_rows);
   if (f->values.gravity <= row->high) return OK;
-  return yaml_file_refuse(f->yaml, "gravity", "gravity is %g m/s^2, allowed is at most %g",
-                          f->values.gravity, row->high);
+  return yaml_source_refuse(f->yaml, "gravity", "gravity is %g m/s^2, allowed is at most %g",
+                            f->values.gravity, row->high);
 }
 
 static status take_params(struct scene_file *f)
@@ -173,7 +176,7 @@ static status take_params(struct scene_file *f)
 #undef P
     if (!text) continue;
     snprintf(key, sizeof key, "params.%s", row->name);
-    TRY(param_parse(row, text, yaml_file_place(f->yaml, key, place, sizeof place),
+    TRY(param_parse(row, text, yaml_source_place(f->yaml, key, place, sizeof place),
                     value_of(&f->values, k)));
     f->given |= 1u << k;
   }
@@ -194,7 +197,7 @@ static status check_all(struct scene_file *f, const char *path)
 {
   const struct file_scene *s = f->said;
   if (s->dim != 2 && s->dim != 3)
-    return yaml_file_refuse(f->yaml, "dim", "dim is %d, allowed is 2 or 3", s->dim);
+    return yaml_source_refuse(f->yaml, "dim", "dim is %d, allowed is 2 or 3", s->dim);
   TRY(take_name(f, path));
   TRY(take_params(f));
   TRY(check_domain(f));
@@ -209,7 +212,7 @@ status scene_file_load(const char *path, struct scene_file **out)
   void *data = NULL;
   *out = NULL;
   if (!f) return status_set(ERR_MEMORY, "no memory to read %s", path);
-  status result = yaml_file_read(path, scene_schema, &f->yaml, &data);
+  status result = yaml_source_read(path, scene_schema, &f->yaml, &data);
   f->said = data;
   if (result == OK) result = check_all(f, path);
   if (result == OK)
@@ -240,7 +243,7 @@ void scene_file_defaults(const struct scene_file *file, struct scene_params *com
 void scene_file_free(struct scene_file *file)
 {
   if (!file) return;
-  yaml_file_free(file->yaml, file->said);
+  yaml_source_free(file->yaml, file->said);
   free(file->name);
   free(file);
 }
@@ -290,7 +293,7 @@ static status with_place(const struct scene_file *f, const char *list, unsigned 
   if (result != ERR_USER) return result;
   key_of(key, list, k, "");
   snprintf(sentence, sizeof sentence, "%s", status_sentence());
-  return yaml_file_refuse(f->yaml, key, "%s: %s", key, sentence);
+  return yaml_source_refuse(f->yaml, key, "%s: %s", key, sentence);
 }
 
 /* Without a domain in the file: as much room on every side as the whole scene is wide. */
@@ -325,7 +328,7 @@ status scene_file_build(struct scene_file *file, struct scene *scene)
 {
   const struct file_scene *s = file->said;
   if (s->dim != DIM)
-    return yaml_file_refuse(file->yaml, "dim", "dim is %d, asked is a run in %d-D", s->dim, DIM);
+    return yaml_source_refuse(file->yaml, "dim", "dim is %d, asked is a run in %d-D", s->dim, DIM);
   for (unsigned k = 0; k < s->fluid_count; k++) {
     const int first = scene->n;
     TRY(with_place(file, "fluid", k, fill_shape(scene, &s->fluid[k])));

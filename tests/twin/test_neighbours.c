@@ -1,17 +1,7 @@
-/* The neighbour search against brute force: same rows, in the same order, for any number of threads and on both code paths (with
- * vector instructions as compiled, and in plain C). To be compiled as core/neighbours is, without contraction. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-#include <omp.h>
-
-#include "../../core/neighbours/neighbours.h"
+/* The neighbour search against brute force: same rows, in the same order, for any number of threads
+ * and on both code paths (with vector instructions as compiled, and in plain C). To be compiled as
+ * core/neighbours is, without contraction. */
+#include "worlds.h"
 
 #define PLAIN_SEARCH
 #define pairs_build plain_pairs_build
@@ -19,109 +9,6 @@
 #include "../../core/neighbours/search.c"
 #undef pairs_build
 #undef pair_list_free
-
-enum { MOST_SETS = 2 };
-
-/* Sets of particles with their cells. */
-struct world {
-  int num_sets, n[MOST_SETS];
-  vec *x[MOST_SETS], period;
-  real support;
-  struct grid grid;
-  struct cell_set set[MOST_SETS];
-};
-
-static unsigned long long seed;
-static real uniform(void)
-{
-  seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
-  return (real)((double)(seed >> 40) / 16777216.0);
-}
-
-static int begin_test(void **unused)
-{
-  (void)unused;
-  seed = 1;
-  return 0;
-}
-
-static vec everywhere(real a)
-{
-  vec r;
-  for (int d = 0; d < DIM; d++) r.c[d] = a;
-  return r;
-}
-
-static vec somewhere(real side)
-{
-  vec r;
-  for (int d = 0; d < DIM; d++) r.c[d] = side * uniform();
-  return r;
-}
-
-static struct world world_make(int num_sets, int n, int n2, real support)
-{
-  struct world w;
-  memset(&w, 0, sizeof w);
-  w.num_sets = num_sets;
-  w.n[0] = n;
-  w.n[1] = n2;
-  w.support = support;
-  for (int s = 0; s < num_sets; s++) w.x[s] = (vec *)calloc((size_t)w.n[s] + 1, sizeof(vec));
-  return w;
-}
-
-/* A cube of about n particles with spacing 1 around the origin, displaced by up to `jitter`. */
-static int cube_side(int n) { return (int)(pow((double)n, 1.0 / DIM) + 0.5); }
-static struct world world_cube(int n, real support, real jitter)
-{
-  const int side = cube_side(n);
-  struct world w = world_make(1, DIM == 3 ? side * side * side : side * side, 0, support);
-  for (int i = 0; i < w.n[0]; i++)
-    for (int d = 0, k = i; d < DIM; d++, k /= side)
-      w.x[0][i].c[d] = (real)(k % side - side / 2) + jitter * (2 * uniform() - 1);
-  return w;
-}
-
-static void world_free(struct world *w)
-{
-  for (int s = 0; s < w->num_sets; s++) {
-    free(w->x[s]);
-    cell_set_free(&w->set[s]);
-  }
-}
-
-/* Grid around the finite particles, each set in cell order. On periodic axes the box begins at `origin`. */
-static void world_sort(struct world *w, real origin)
-{
-  vec low = zero(), high = zero();
-  int some = 0, total = 0;
-  for (int s = 0; s < w->num_sets; s++) {
-    vec a, b;
-    total += w->n[s];
-    if (positions_bounds(w->x[s], w->n[s], &a, &b) == w->n[s]) continue;
-    for (int d = 0; d < DIM; d++) {
-      low.c[d] = some ? smaller(low.c[d], a.c[d]) : a.c[d];
-      high.c[d] = some ? larger(high.c[d], b.c[d]) : b.c[d];
-    }
-    some = 1;
-  }
-  for (int d = 0; d < DIM; d++)
-    if (w->period.c[d] > 0) low.c[d] = origin;
-  assert_int_equal(grid_fit(&w->grid, low, high, w->period, w->support, total), OK);
-  assert_true(w->grid.num_cells <= 4 * total + 4096);
-  for (int s = 0; s < w->num_sets; s++) {
-    const int n = w->n[s];
-    int *order = (int *)malloc(sizeof(int) * ((size_t)n + 1));
-    vec *sorted = (vec *)malloc(sizeof(vec) * ((size_t)n + 1));
-    assert_int_equal(cell_sort(&w->set[s], &w->grid, w->x[s], n, order), OK);
-    permute(sorted, w->x[s], order, n, sizeof(vec));
-    memcpy(w->x[s], sorted, sizeof(vec) * (size_t)n);
-    w->set[s].x = w->x[s];
-    free(order);
-    free(sorted);
-  }
-}
 
 /* |a - b|^2 < R^2, every operation rounded, as the search decides it. */
 static int are_near(const struct world *w, vec a, vec b)
@@ -167,7 +54,8 @@ typedef status build_function(struct pair_list *, const struct grid *, const str
                               const struct cell_set *, const int *, int);
 
 /* The list of all sets to all sets; the second one's numbers begin after a gap. */
-static void build_all(const struct world *w, struct pair_list *list, build_function *build, int offset[2])
+static void build_all(const struct world *w, struct pair_list *list, build_function *build,
+                      int offset[2])
 {
   int rows = 0;
   offset[0] = 0;
@@ -229,18 +117,6 @@ static void check_symmetric(const struct world *w)
   pair_list_free(&list);
 }
 
-static int most_in_a_cell(const struct world *w, int s)
-{
-  int most = 0;
-  for (int c = 0; c < w->grid.num_cells; c++) {
-    const int n = w->set[s].first[c + 1] - w->set[s].first[c];
-    most = n > most ? n : most;
-  }
-  return most;
-}
-
-/* --- the tests ------------------------------------------------------------------------------- */
-
 static void compiled_without_contraction(void **unused)
 {
   (void)unused;
@@ -260,7 +136,8 @@ static void open_cloud(void **unused)
   world_free(&w);
 }
 
-/* Pairs at exactly R, particles at exactly a cell's border: R is 1, 2 and 2.5 spacings, 0.1 is not exact. */
+/* Pairs at exactly R, particles at exactly a cell's border: R is 1, 2 and 2.5 spacings, 0.1 is not
+ * exact. */
 static void lattices(void **unused)
 {
   (void)unused;
@@ -302,7 +179,8 @@ static void cell_borders(void **unused)
   }
 }
 
-/* Pairs along an axis, as far apart as neighbours can be, in boxes so wide that rounding would move them by cells. */
+/* Pairs along an axis, as far apart as neighbours can be, in boxes so wide that rounding would move
+ * them by cells. */
 static void farthest_neighbours(void **unused)
 {
   (void)unused;
@@ -320,7 +198,8 @@ static void farthest_neighbours(void **unused)
   }
 }
 
-/* A period that holds its cells with nothing to spare, particles at the borders next to its seam. */
+/* A period that holds its cells with nothing to spare, particles at the borders next to its seam.
+ */
 static void seam_borders(void **unused)
 {
   (void)unused;
@@ -376,7 +255,8 @@ static void empty_sets(void **unused)
   }
 }
 
-/* All axes periodic, one of them, and boxes of 2, 2.x, 3 and more supports; `beyond` moves particles by whole periods. */
+/* All axes periodic, one of them, and boxes of 2, 2.x, 3 and more supports; `beyond` moves
+ * particles by whole periods. */
 static void periodic_box(real in_supports, unsigned axes, int beyond)
 {
   struct world w = world_make(1, 1100, 0, (real)0.125);
@@ -425,24 +305,10 @@ static void wide_period(void **unused)
   struct world w = world_make(1, 1200, 0, 1);
   w.period = everywhere(20000);
   for (int i = 0; i < w.n[0]; i++)
-    for (int d = 0; d < DIM; d++)
-      w.x[0][i].c[d] = i % 2 ? 4 * uniform() : 20000 - 4 * uniform();
+    for (int d = 0; d < DIM; d++) w.x[0][i].c[d] = i % 2 ? 4 * uniform() : 20000 - 4 * uniform();
   assert_true(check_world(&w, 0) > 2 * w.n[0]);
   assert_true(most_in_a_cell(&w, 0) < 100);
   world_free(&w);
-}
-
-static void short_period(void **unused)
-{
-  (void)unused;
-  struct grid grid;
-  vec period = zero();
-  period.c[DIM - 1] = (real)0.199;
-  assert_int_equal(grid_fit(&grid, zero(), everywhere(1), period, (real)0.1, 10), ERR_USER);
-  assert_non_null(strstr(status_sentence(), "0.199"));
-  assert_non_null(strstr(status_sentence(), DIM == 3 ? "along z" : "along y"));
-  period.c[DIM - 1] = 2 * (real)0.1;
-  assert_int_equal(grid_fit(&grid, zero(), everywhere(1), period, (real)0.1, 10), OK);
 }
 
 static void coincident(void **unused)
@@ -522,13 +388,18 @@ static void not_finite(void **unused)
   struct world w = world_make(1, 3000, 0, (real)0.1);
   for (int i = 0; i < w.n[0]; i++) {
     w.x[0][i] = somewhere(1);
-    const vec bad = everywhere(i % 8 == 1 ? (real)NAN : i % 8 == 3 ? (real)INFINITY : -(real)INFINITY);
-    if (i % 16 < 8 && i % 2) w.x[0][i] = bad;
-    else if (i % 2) w.x[0][i].c[i / 2 % DIM] = bad.c[0];
+    const vec bad = everywhere(i % 8 == 1   ? (real)NAN
+                               : i % 8 == 3 ? (real)INFINITY
+                                            : -(real)INFINITY);
+    if (i % 16 < 8 && i % 2)
+      w.x[0][i] = bad;
+    else if (i % 2)
+      w.x[0][i].c[i / 2 % DIM] = bad.c[0];
   }
   vec low, high;
   assert_int_equal(positions_bounds(w.x[0], w.n[0], &low, &high), 1500);
-  for (int d = 0; d < DIM; d++) assert_true(low.c[d] >= 0 && low.c[d] < high.c[d] && high.c[d] <= 1);
+  for (int d = 0; d < DIM; d++)
+    assert_true(low.c[d] >= 0 && low.c[d] < high.c[d] && high.c[d] <= 1);
   check_world(&w, 0);
   assert_true(most_in_a_cell(&w, 0) < (DIM == 3 ? 40 : 80));
   for (int i = 0; i < w.n[0]; i++) w.x[0][i].c[0] = (real)NAN;
@@ -547,49 +418,8 @@ static void far_from_the_origin(void **unused)
   world_free(&w);
 }
 
-static void sort_is_stable(void **unused)
-{
-  (void)unused;
-  enum { N = 40000 };
-  static vec x[N];
-  static int order[3][N];
-  struct grid grid;
-  struct cell_set set = {0};
-  for (int i = 0; i < N; i++) x[i] = somewhere(1);
-  x[17].c[0] = (real)NAN;
-  assert_int_equal(grid_fit(&grid, zero(), everywhere(1), zero(), (real)0.07, N), OK);
-  for (int k = 0; k < 3; k++) {
-    omp_set_num_threads(1 << k);
-    assert_int_equal(cell_sort(&set, &grid, x, N, order[k]), OK);
-    assert_memory_equal(order[k], order[0], sizeof order[0]);
-    assert_int_equal(set.n, N);
-    assert_int_equal(set.first[grid.num_cells], N);
-    for (int c = 0; c < grid.num_cells; c++)
-      for (int i = set.first[c]; i < set.first[c + 1]; i++) {
-        assert_int_equal(grid_cell_of(&grid, x[order[k][i]], order[k][i]), c);
-        assert_true(i == set.first[c] || order[k][i] > order[k][i - 1]);
-      }
-  }
-  omp_set_num_threads(omp_get_num_procs());
-  cell_set_free(&set);
-}
-
-static void permute_moves_bytes(void **unused)
-{
-  (void)unused;
-  enum { N = 20000, MOST = 40 };
-  static unsigned char from[N * MOST], to[N * MOST];
-  static int order[N];
-  for (int i = 0; i < N * MOST; i++) from[i] = (unsigned char)(256 * uniform());
-  for (int i = 0; i < N; i++) order[i] = (int)((long long)i * 7919 % N);
-  for (size_t bytes = 1; bytes <= MOST; bytes++) {
-    permute(to, from, order, N, bytes);
-    for (size_t i = 0; i < N; i++)
-      assert_memory_equal(to + i * bytes, from + (size_t)order[i] * bytes, bytes);
-  }
-}
-
-/* A list built again in the same memory, smaller and larger, is as good as new and keeps what it has taken. */
+/* A list built again in the same memory, smaller and larger, is as good as new and keeps what it
+ * has taken. */
 static void memory_is_reused(void **unused)
 {
   (void)unused;
@@ -609,95 +439,29 @@ static void memory_is_reused(void **unused)
   assert_null(list.list);
 }
 
-/* No particle within `reach` supports may be overlooked; without wrapping none is seen further than reach + 1 cells away. */
-static void occupied_cells(void **unused)
-{
-  (void)unused;
-  for (int cut = 0; cut < 2; cut++) {
-    struct world w = world_make(1, 60, 0, DIM == 3 ? (real)0.1 : (real)0.03);
-    for (int i = 0; i < w.n[0]; i++) w.x[0][i] = somewhere(1);
-    if (cut) w.x[0][3] = everywhere((real)1e9);
-    world_sort(&w, 0);
-    int yes = 0, no = 0;
-    for (int k = 0; k < 1000; k++) {
-      const int reach = 1 + k % 2;
-      const vec x = plus(somewhere((real)1.4), everywhere((real)-0.2));
-      int near = 0, seen = 0;
-      for (int i = 0; i < w.n[0]; i++) {
-        real most = 0;
-        for (int d = 0; d < DIM; d++) most = larger(most, fabs(x.c[d] - w.x[0][i].c[d]));
-        near |= most < w.support * (real)reach;
-        seen |= most < w.support * ((real)reach + (real)1.001) + (real)0.2; /* clamped from 0.2 outside */
-      }
-      const int found = grid_occupied(&w.grid, w.set[0].first, x, reach);
-      assert_true(found || !near);
-      assert_true(cut || seen || !found);
-      yes += found;
-      no += !found;
-    }
-    assert_true(yes > 100 && no > 20);
-    world_free(&w);
-  }
-}
-
-static int compare_keys(const void *a, const void *b)
-{
-  const unsigned long long p = *(const unsigned long long *)a, q = *(const unsigned long long *)b;
-  return (p > q) - (p < q);
-}
-
-static void unique_keys(void **unused)
-{
-  (void)unused;
-  enum { N = 60000 };
-  static unsigned long long keys[N], twin[N];
-  const unsigned long long range[] = {1, 100, 30000, 1ULL << 40};
-  for (int k = 0; k < 16; k++) {
-    const int n = k < 4 ? k : k < 8 ? 500 : N;
-    for (int i = 0; i < n; i++) {
-      const real u = uniform(), v = uniform();
-      keys[i] = twin[i] = (unsigned long long)((double)u * (double)range[k % 4]) << (k % 3 * 12);
-      if (v < (real)0.1) keys[i] = twin[i] = ~keys[i];
-    }
-    qsort(twin, (size_t)n, sizeof *twin, compare_keys);
-    int left = 0;
-    for (int i = 0; i < n; i++)
-      if (twin[i] != ~0ULL && (left == 0 || twin[i] != twin[left - 1])) twin[left++] = twin[i];
-    omp_set_num_threads(1 << k / 4);
-    assert_int_equal(keys_unique(keys, n), left);
-    assert_memory_equal(keys, twin, sizeof *keys * (size_t)left);
-  }
-  omp_set_num_threads(omp_get_num_procs());
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup(compiled_without_contraction, begin_test),
-      cmocka_unit_test_setup(open_cloud, begin_test),
-      cmocka_unit_test_setup(lattices, begin_test),
-      cmocka_unit_test_setup(cell_borders, begin_test),
-      cmocka_unit_test_setup(farthest_neighbours, begin_test),
-      cmocka_unit_test_setup(seam_borders, begin_test),
-      cmocka_unit_test_setup(jittered_cubes, begin_test),
-      cmocka_unit_test_setup(two_sets, begin_test),
-      cmocka_unit_test_setup(empty_sets, begin_test),
-      cmocka_unit_test_setup(periodic_boxes, begin_test),
-      cmocka_unit_test_setup(periodic_lattice, begin_test),
-      cmocka_unit_test_setup(wide_period, begin_test),
-      cmocka_unit_test_setup(short_period, begin_test),
-      cmocka_unit_test_setup(coincident, begin_test),
-      cmocka_unit_test_setup(far_away, begin_test),
-      cmocka_unit_test_setup(archipelago, begin_test),
-      cmocka_unit_test_setup(explosion, begin_test),
-      cmocka_unit_test_setup(sparse_patterns, begin_test),
-      cmocka_unit_test_setup(not_finite, begin_test),
-      cmocka_unit_test_setup(far_from_the_origin, begin_test),
-      cmocka_unit_test_setup(sort_is_stable, begin_test),
-      cmocka_unit_test_setup(permute_moves_bytes, begin_test),
-      cmocka_unit_test_setup(memory_is_reused, begin_test),
-      cmocka_unit_test_setup(occupied_cells, begin_test),
-      cmocka_unit_test_setup(unique_keys, begin_test),
+    cmocka_unit_test_setup(compiled_without_contraction, begin_test),
+    cmocka_unit_test_setup(open_cloud, begin_test),
+    cmocka_unit_test_setup(lattices, begin_test),
+    cmocka_unit_test_setup(cell_borders, begin_test),
+    cmocka_unit_test_setup(farthest_neighbours, begin_test),
+    cmocka_unit_test_setup(seam_borders, begin_test),
+    cmocka_unit_test_setup(jittered_cubes, begin_test),
+    cmocka_unit_test_setup(two_sets, begin_test),
+    cmocka_unit_test_setup(empty_sets, begin_test),
+    cmocka_unit_test_setup(periodic_boxes, begin_test),
+    cmocka_unit_test_setup(periodic_lattice, begin_test),
+    cmocka_unit_test_setup(wide_period, begin_test),
+    cmocka_unit_test_setup(coincident, begin_test),
+    cmocka_unit_test_setup(far_away, begin_test),
+    cmocka_unit_test_setup(archipelago, begin_test),
+    cmocka_unit_test_setup(explosion, begin_test),
+    cmocka_unit_test_setup(sparse_patterns, begin_test),
+    cmocka_unit_test_setup(not_finite, begin_test),
+    cmocka_unit_test_setup(far_from_the_origin, begin_test),
+    cmocka_unit_test_setup(memory_is_reused, begin_test),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
