@@ -10,7 +10,7 @@
 #define PARAMS(P)                                                                              \
   P(outer, 0, 0, 1, "kept|free", "are the outer velocities held, or only given at the start?") \
   P(speed, 0.05, 0, 1e6, "m/s", "speed of the outer particles")                                \
-  P(offset, 0.2, -1, 1, "dx", "displacement of the middle particle from the centre")
+  P(shift, 0.2, -1, 1, "dx", "displacement of the middle particle from the centre")
 
 typedef struct {
   PARAMS(PARAM_MEMBER)
@@ -30,7 +30,7 @@ static status build(struct scene *scene, void *self)
   const state *s = (const state *)self;
   const double dx = scene->common.spacing, speed = (double)s->speed;
   TRY(scene_add(scene, scene_at(-dx, 0, 0), scene_at(-speed, 0, 0)));
-  TRY(scene_add(scene, scene_at((double)s->offset * dx, 0, 0), zero()));
+  TRY(scene_add(scene, scene_at((double)s->shift * dx, 0, 0), zero()));
   TRY(scene_add(scene, scene_at(dx, 0, 0), scene_at(speed, 0, 0)));
   scene_domain_around(scene, 10 * dx + 2 * speed * scene->common.t_end);
   return OK;

@@ -1,21 +1,34 @@
 /* Divergence-free SPH.
- * J. Bender, D. Koschier, IEEE Trans. Vis. Comput. Graph. 23(3) (2017) 1193-1206, doi:10.1109/TVCG.2016.2578335. Equation and
- * algorithm numbers are that paper's; D_i below is rho_i/alpha_i.
+ * J. Bender, D. Koschier, IEEE Trans. Vis. Comput. Graph. 23(3) (2017) 1193-1206,
+ * doi:10.1109/TVCG.2016.2578335. Equation and algorithm numbers are that paper's; D_i below is
+ * rho_i/alpha_i.
  *
- * Differences from the paper:
- *   relaxation kappa of an iteration is multiplied by a factor, 1.4/theta_max by default, where theta_max = 2.1 .. 7.5 is the
- *              largest eigenvalue of the unrelaxed iteration on a lattice (sph/lattice.h): beyond 2/theta_max, so also with the
- *              paper's 1, the iteration overshoots and an unclamped one diverges
- *   clamp      the sum of kappa over the iterations is kept >= 0, so that an overshoot is taken back; the stopping error is the
- *              change that an iteration still makes, which is the mean compression where nothing is clamped
- *   free       kappa < 0 may hold density where it is below rho0 but never raises it: surfaces do not contract
- *   stopping   tested before a correction, so the residual is that after the last one; at least 2 and 1 iterations as there
- *   walls      particles of mass m with a velocity and without kappa, so a fluid particle feels its own kappa mirrored
- *   isolated   D_i is at least 1e-6 (rho0/R)^2
- *   warm start the full kappa of the step before
- *   pressure   p_i = rho_i (kappa_i + kappa^v_i), whose impulse moved the particle in this step */
+ * Differences from the paper: see DIFFERENCES below.
+ *
+ * relaxation: a correction by the paper's kappa takes away theta times the error of a mode, theta
+ * <= theta_max = 2.1 .. 7.5 on a lattice (sph/lattice.h; supports of 2 to 3 dx), about a fifth more
+ * on a disordered one. Beyond 2/theta_max an iteration diverges, unless clamp = each, which never
+ * takes an overshoot back: with the paper's factor of 1 that works at theta_max < 3 and makes fluid
+ * expand beyond. */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+
+#define DIFFERENCES                                                                                \
+  "relaxation: kappa of an iteration is multiplied by 1.4/theta_max (0.7/theta_max if clamp = "    \
+  "free, where particles cluster), theta_max the largest eigenvalue of the unrelaxed iteration "   \
+  "on a lattice; the paper's factor is 1\n"                                                        \
+  "clamp: clamped keeps the sum of kappa over the iterations >= 0, so that an overshoot is taken " \
+  "back; each keeps every iteration's kappa >= 0, as published programs do (they start from half " \
+  "of the last kappa); free lets kappa < 0 hold density where it is below rho0, but never "        \
+  "raise it, so that surfaces do not contract\n"                                                   \
+  "stopping: before a correction, by what it would still change: the mean compression where "      \
+  "nothing is clamped; at least 2 density and 1 divergence iterations as in the paper\n"           \
+  "projection alone: the divergence tolerance is relative to the divergence at the start\n"        \
+  "walls: particles of mass m with a velocity and without kappa\n"                                 \
+  "isolated particles: D_i = rho_i/alpha_i is at least 1e-6 (rho0/R)^2\n"                          \
+  "warm start: from the whole kappa/rho of the last step\n"                                        \
+  "pressure: p_i = rho_i (kappa_i + kappa^v_i), whose impulse acted in this step; the paper "      \
+  "shows none"
 
 enum { CLAMPED, FREE, EACH };
 enum { OFF, ON };
@@ -23,21 +36,21 @@ enum { LEAST_DENSITY = 2, LEAST_DIVERGENCE = 1 };
 
 #define PARAMS(P)                                                                                  \
   P(tolerance, 1e-4, 0, 1, "1", "mean relative density error at which to stop")                    \
-  P(divergence_tolerance, 1e-4, 0, 1, "1", "mean relative density change per step at which to stop") \
+  P(divergence_tolerance, 1e-4, 0, 1, "1", "mean relative density change per step to stop at")     \
   P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations of either solver")             \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations of each, whatever the error; 0: by tolerance") \
+  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations of each; 0: by tolerance")             \
   P(relaxation, 0, 0, 2, "1", "factor on kappa in an iteration; 0: 1.4/theta_max of the lattice")  \
-  P(clamp, CLAMPED, 0, 2, "clamped|free|each", "kappa that only repels, or also holds together")        \
-  P(density_solver, ON, 0, 1, "off|on", "the constant-density solver")                                    \
-  P(divergence_solver, ON, 0, 1, "off|on", "the divergence solver")                                       \
-  P(warm_density, 1, 0, 1, "1", "part of the last step's kappa that the density solver starts from") \
+  P(clamp, CLAMPED, 0, 2, "clamped|free|each", "sum of kappa >= 0, any, or each iteration's >= 0") \
+  P(density_solver, ON, 0, 1, "off|on", "the constant-density solver")                             \
+  P(divergence_solver, ON, 0, 1, "off|on", "the divergence solver")                                \
+  P(warm_density, 1, 0, 1, "1", "part of its last kappa that the density solver starts from")      \
   P(warm_divergence, 1, 0, 1, "1", "part of its last kappa that the divergence solver starts from")
 
-#define FIELDS(F)                                                                                  \
-  F(real, excess, FLUID, KEPT, "1", "rho_i/rho_0 - 1")                                             \
-  F(real, factor, FLUID, KEPT, "m^8/kg^2", "alpha_i/rho_i of Eq. (11)")            \
-  F(real, push, FLUID, KEPT, "m^5/(kg s^2)", "kappa_i/rho_i of the density solver")                \
-  F(real, push_v, FLUID, KEPT, "m^5/(kg s^2)", "kappa^v_i/rho_i of the divergence solver")         \
+#define FIELDS(F)                                                                          \
+  F(real, excess, FLUID, KEPT, "1", "rho_i/rho_0 - 1")                                     \
+  F(real, factor, FLUID, KEPT, "m^8/kg^2", "alpha_i/rho_i of Eq. (11)")                    \
+  F(real, push, FLUID, KEPT, "m^5/(kg s^2)", "kappa_i/rho_i of the density solver")        \
+  F(real, push_v, FLUID, KEPT, "m^5/(kg s^2)", "kappa^v_i/rho_i of the divergence solver") \
   F(real, change, ALL, STEP, "m^5/(kg s^2)", "change of either in this iteration, 0 on walls")
 
 typedef struct {
@@ -47,17 +60,19 @@ typedef struct {
   real theta; /* the relaxation in force */
 } state;
 
+/* kappa_i = kappa^v_i = 0 at the start; no change on walls, for good */
 STAGE void forget(const state *s, int i) { s->push[i] = s->push_v[i] = 0; }
 STAGE void forget_change(const state *s, int i) { s->change[i] = 0; }
 
 /* rho_i = sum_j m_j W_ij
- * Eq. (11)   alpha_i = rho_i / D_i,   D_i = |sum_j m_j grad W_ij|^2 + sum_j |m_j grad W_ij|^2, the latter not over walls */
+ * Eq. (11)   alpha_i = rho_i / D_i,   D_i = |sum_j m_j grad W_ij|^2 + sum_j |m_j grad W_ij|^2,
+ *            the second sum not over walls, which do not give way */
 STAGE void factor(const state *s, int i)
 {
   const struct particles p = s->p;
   lanes rho = NO_LANES, others = NO_LANES;
   vecs own = NO_VECS;
-  for_neighbours(s, i, ij) {
+  for_neighbours (s, i, ij) {
     const lanes m = of(p.m, ij);
     const vecs g = scale(m, gradW(&s->nb, ij));
     rho += m * W(&s->nb, ij);
@@ -75,13 +90,13 @@ STAGE void factor(const state *s, int i)
 STAGE real compression(const state *s, int i)
 {
   lanes rate = NO_LANES;
-  for_neighbours(s, i, ij) rate += of(s->p.m, ij) * dot(diff(s->p.v, ij), gradW(&s->nb, ij));
+  for_neighbours (s, i, ij) rate += of(s->p.m, ij) * dot(diff(s->p.v, ij), gradW(&s->nb, ij));
   return s->dt / s->rho0 * sum(rate);
 }
 
-/* The change of kappa_i/rho_i, now `push`, that takes away the error in relative density: with kappa >= 0 against `high`, the
- * error where nothing may be denser; with kappa <= 0 against `low`, that where nothing may be thinner. Returns the part of the
- * error that this acts on. */
+/* The change of kappa_i/rho_i, now `push`, that takes away the error in relative density: against
+ * `high`, the excess over what is allowed, kappa >= 0 acts; against `low`, the shortfall (< 0), if
+ * free, kappa <= 0. Returns the part of the error that the change takes away. */
 STAGE real relax(const state *s, int i, real push, real high, real low)
 {
   const real gain = s->theta * s->rho0 * s->factor[i] / sq(s->dt);
@@ -99,39 +114,42 @@ STAGE real predict_density(const state *s, int i)
   return relax(s, i, s->push[i], s->excess[i] + rate, larger(s->excess[i], 0) + rate);
 }
 
-/* Alg. 2, Eq. (9)   kappa^v_i = 1/dt Drho_i/Dt alpha_i */
+/* Alg. 2   kappa^v_i = 1/dt Drho_i/Dt alpha_i */
 STAGE real predict_divergence(const state *s, int i)
 {
   const real rate = compression(s, i);
   return relax(s, i, s->push_v[i], rate, rate);
 }
 
-/* Eq. (12)   v_i = v_i - dt sum_j m_j (kappa_i/rho_i + kappa_j/rho_j) grad W_ij */
+/* Alg. 2 and 3   v_i = v_i - dt sum_j m_j (kappa_i/rho_i + kappa_j/rho_j) grad W_ij */
 STAGE void repel(const state *s, int i)
 {
   const real own = s->change[i];
   vecs a = NO_VECS;
-  for_neighbours(s, i, ij)
+  for_neighbours (s, i, ij)
     a = add(a, scale(of(s->p.m, ij) * (own + of(s->change, ij)), gradW(&s->nb, ij)));
   s->p.v[i] = madd(s->p.v[i], -s->dt, sum(a));
 }
+/* kappa_i = sum of its changes, and what that does to v_i */
 STAGE void correct_density(const state *s, int i)
 {
   s->push[i] += s->change[i];
   repel(s, i);
 }
+/* kappa^v_i = sum of its changes, and what that does to v_i */
 STAGE void correct_divergence(const state *s, int i)
 {
   s->push_v[i] += s->change[i];
   repel(s, i);
 }
 
-/* The first change of a solve is all that the last step needed, or nothing. */
+/* kappa_i = 0, its first change = what the last step needed */
 STAGE void begin_density(const state *s, int i)
 {
   s->change[i] = s->warm_density * s->push[i];
   s->push[i] = 0;
 }
+/* kappa^v_i = 0, its first change = what the last step needed */
 STAGE void begin_divergence(const state *s, int i)
 {
   s->change[i] = s->warm_divergence * s->push_v[i];
@@ -144,9 +162,10 @@ STAGE void pressure(const state *s, int i)
   s->p.p[i] = sq(s->rho0 * (1 + s->excess[i])) * (s->push[i] + s->push_v[i]);
 }
 
-/* Is the solver done after k corrections? Counts the solve if so; gives the run up if its error is not a number. */
-static status judge(struct run *run, const state *s, const char *what, int k, double error, int least,
-                    double tolerance, int *done)
+/* Is the solver done after k corrections? Counts the solve if so; gives the run up if its error is
+ * not a number. */
+static status judge(struct run *run, const state *s, const char *what, int k, double error,
+                    int least, double tolerance, int *done)
 {
   const int fixed = (int)s->fixed_iterations, most = fixed > 0 ? fixed : (int)s->max_iterations;
   const int reached = fixed > 0 ? k == fixed : k >= least && error <= tolerance;
@@ -170,7 +189,7 @@ static status solve_density(struct run *run, state *s)
   }
 }
 
-/* Alg. 2. The tolerance is a relative change of density per step, or a part of the error at the start. */
+/* Alg. 2. The tolerance is a relative change of density per step, or a part of the first error. */
 static status solve_divergence(struct run *run, state *s, int relative)
 {
   double tolerance = (double)s->divergence_tolerance;
@@ -205,9 +224,8 @@ static status start(struct run *run, void *self)
 {
   state *s = (state *)self;
   const double safety = s->clamp == (real)FREE ? 0.7 : 1.4;
-  s->theta = s->relaxation > 0
-                 ? s->relaxation
-                 : (real)(safety / lattice_stiffest(&s->nb.kernel, (double)s->dx));
+  s->theta = s->relaxation > 0 ? s->relaxation
+                               : (real)(safety / lattice_stiffest(&s->nb.kernel, (double)s->dx));
   sweep(forget, s);
   sweep_over(forget_change, s, s->p.n_all);
   TRY(run_neighbours(run));
@@ -229,32 +247,25 @@ static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
 const struct solver solver_dfsph = {
-    .abi = SOLVER_ABI,
-    .name = "dfsph",
-    .about = "Divergence-free SPH: a divergence and a constant-density solver, warm started",
-    .paper = "J. Bender, D. Koschier, Divergence-Free SPH for Incompressible and Viscous Fluids, IEEE Trans. Vis. "
-             "Comput. Graph. 23(3) (2017) 1193-1206",
-    .doi = "10.1109/TVCG.2016.2578335",
-    .differences =
-        "relaxation: kappa of an iteration times 1.4/theta_max by default; the paper's 1 overshoots\n"
-        "clamp: the sum of kappa over the iterations is kept >= 0, so that an overshoot is taken back\n"
-        "free: kappa < 0 may hold density where it is below rho0 but never raises it\n"
-        "stopping: tested before a correction on what it would still change, so the residual is what is left\n"
-        "walls: particles of mass m with a velocity and without kappa\n"
-        "isolated particles: D_i = rho_i/alpha_i is at least 1e-6 (rho0/R)^2\n"
-        "warm start: the full kappa of the step before\n"
-        "pressure: p_i = rho_i (kappa_i + kappa^v_i)",
-    .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
-    .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC) |
-           CAN(PROJECT),
-    .params = params,
-    .num_params = COUNT(params),
-    .fields = fields,
-    .num_fields = COUNT(fields),
-    .state_size = sizeof(state),
-    .start = start,
-    .step = step,
-    .project = project,
-    .max_dt = NULL,
-    .stop = NULL,
+  .abi = SOLVER_ABI,
+  .name = "dfsph",
+  .about = "Divergence-free SPH: a divergence and a constant-density solver, warm started",
+  .paper = "J. Bender, D. Koschier, Divergence-Free SPH for Incompressible and Viscous Fluids, "
+           "IEEE Trans. Vis. Comput. Graph. 23(3) (2017) 1193-1206",
+  .doi = "10.1109/TVCG.2016.2578335",
+  .differences = DIFFERENCES,
+  .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
+  .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
+         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM),
+  .params = params,
+  .num_params = COUNT(params),
+  .fields = fields,
+  .num_fields = COUNT(fields),
+  .state_size = sizeof(state),
+  .start = start,
+  .step = step,
+  .project = project,
+  .max_dt = NULL,
+  .uses = NULL,
+  .stop = NULL,
 };

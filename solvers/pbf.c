@@ -1,21 +1,27 @@
 /* Position Based Fluids.
- * M. Macklin, M. Mueller, ACM Trans. Graph. 32(4) (2013) 104, doi:10.1145/2461912.2461984. Equation numbers are that paper's.
+ * M. Macklin, M. Mueller, ACM Trans. Graph. 32(4) (2013) 104, doi:10.1145/2461912.2461984. Equation
+ * and algorithm numbers are that paper's.
  *
- * Differences from the paper:
- *   masses     rho_i = sum_j m_j W_ij and m_j in every gradient; the paper sets m = 1
- *   epsilon    in units of 1/dx^2, as |grad C|^2 is one; 0.4 keeps the Jacobi iteration stable at any support:
- *              it acts as a relaxation |grad C|^2/(|grad C|^2 + epsilon), which must stay below 2/theta_max, where
- *              theta_max = 2.1 .. 7.4 is the largest eigenvalue of the unrelaxed iteration on a lattice (sph/lattice.h)
- *   kernels    one kernel for W and grad W, as the scene chooses; the paper takes poly6 and spiky
- *   clamp      lambda <= 0 by default, so that nothing attracts; the paper lets surfaces attract and repels by s_corr
- *   s_corr     off by default; k in units of dx^2, dq in units of R
- *   velocity   v += dx/dt in every iteration, which is (x* - x)/dt without its cancellation
- *   walls      particles of mass m that do not move, lambda = 0; the paper detects collisions
- *   pressure   p_i = -rho0 sum_l lambda_i / dt^2 over the iterations l: what gives dx_i = -dt^2 sum_j m_j
- *              (p_i + p_j)/rho0^2 grad W_ij; the paper has none
- *   stopping   also by the mean compression, and the residual is that after the last correction
- *   no vorticity confinement */
+ * Differences from the paper: see DIFFERENCES below.
+ *
+ * epsilon: the Jacobi iteration multiplies its stiffest mode by 1 - theta g/(g + epsilon), where
+ * g = |grad C|^2 = 0.07 .. 0.5 /dx^2 and theta = 2.1 .. 7.5 on a lattice (sph/lattice.h; larger
+ * supports have less g and more theta). 0.4/dx^2 makes that -0.45 at worst for supports of 2 to 3
+ * dx; 0 makes it -1.1 .. -6.5. */
 #include "../core/solver.h"
+
+#define DIFFERENCES                                                                              \
+  "masses: rho_i = sum_j m_j W_ij and m_j in every gradient; the paper sets m = 1\n"             \
+  "epsilon: in units of 1/dx^2, with a default that keeps the iteration stable at any support\n" \
+  "kernels: one kernel for W and grad W, the scene's; the paper takes poly6 and spiky\n"         \
+  "clamp: lambda <= 0 by default; the paper lets surfaces attract and repels by s_corr\n"        \
+  "s_corr: off by default; k in units of dx^2, dq in units of the support\n"                     \
+  "velocity: v += dx/dt in every iteration, which is (x* - x)/dt without its cancellation\n"     \
+  "walls: particles of mass m that do not move, lambda = 0; the paper detects collisions\n"      \
+  "pressure: p_i = -rho0 sum lambda_i / dt^2 over the iterations, since then "                   \
+  "dx_i = -dt^2 sum_j m_j (p_i + p_j)/rho0^2 grad W_ij; the paper has none\n"                    \
+  "stopping: also by the mean compression; the residual is that after the last correction\n"     \
+  "no vorticity confinement"
 
 enum { CLAMPED, FREE };
 
@@ -29,8 +35,8 @@ enum { CLAMPED, FREE };
   P(scorr_n, 4, 1, 16, "1", "its exponent n, an integer")                                          \
   P(scorr_dq, 0.2, 0, 0.9, "R", "its reference distance dq")
 
-#define FIELDS(F)                                                                                  \
-  F(real, lambda, ALL, STEP, "m^2", "multiplier lambda_i of the density constraint, 0 on walls")   \
+#define FIELDS(F)                                                                                \
+  F(real, lambda, ALL, STEP, "m^2", "multiplier lambda_i of the density constraint, 0 on walls") \
   F(vec, shift, FLUID, STEP, "m", "position change of this iteration")
 
 typedef struct {
@@ -40,24 +46,25 @@ typedef struct {
   real scorr_W; /* W(dq) [1/m^d] */
 } state;
 
+/* lambda_i = 0, for walls for good */
 STAGE void no_multiplier(const state *s, int i) { s->lambda[i] = 0; }
 
 /* Alg. 1, line 2   v_i = v_i + dt f_ext */
-STAGE void apply_forces(const state *s, int i)
-{
-  s->p.v[i] = madd(s->p.v[i], s->dt, s->gravity);
-  s->p.p[i] = 0;
-}
+STAGE void apply_forces(const state *s, int i) { s->p.v[i] = madd(s->p.v[i], s->dt, s->gravity); }
+
+/* p_i = 0 before the iterations */
+STAGE void no_pressure(const state *s, int i) { s->p.p[i] = 0; }
 
 /* Eq. (1), (2)   C_i = rho_i/rho_0 - 1,   rho_i = sum_j m_j W_ij
- * Eq. (7), (8)   grad_k C_i = 1/rho_0 { sum_j m_j grad W_ij if k = i;  -m_k grad W_ik if k = j, 0 for walls }
+ * Eq. (7), (8)   grad_k C_i = 1/rho_0 { sum_j m_j grad W_ij for k = i;  -m_k grad W_ik for k != i,
+ *                                      0 for walls }
  * Eq. (11)       lambda_i = -C_i / (sum_k |grad_k C_i|^2 + epsilon) */
 STAGE real multiplier(const state *s, int i)
 {
   const struct particles p = s->p;
   lanes rho = NO_LANES, others = NO_LANES;
   vecs own = NO_VECS;
-  for_neighbours(s, i, ij) {
+  for_neighbours (s, i, ij) {
     const lanes m = of(p.m, ij);
     const vecs g = scale(m, gradW(&s->nb, ij));
     rho += m * W(&s->nb, ij);
@@ -87,7 +94,7 @@ STAGE void correct(const state *s, int i)
 {
   const struct particles p = s->p;
   vecs shift = NO_VECS;
-  for_neighbours(s, i, ij) {
+  for_neighbours (s, i, ij) {
     lanes strength = s->lambda[i] + of(s->lambda, ij);
     if (s->scorr_k > 0) strength += artificial_pressure(s, ij);
     shift = add(shift, scale(of(p.m, ij) * strength, gradW(&s->nb, ij)));
@@ -109,11 +116,12 @@ static status keep_density(struct run *run, state *s)
 {
   const int fixed = (int)s->fixed_iterations, most = fixed > 0 ? fixed : (int)s->max_iterations;
   const double tolerance = fixed > 0 ? -1 : (double)s->tolerance;
+  sweep(no_pressure, s);
   for (int k = 0;; k++) {
     double error;
     sum_over(multiplier, s, s->p.n, &error);
     error /= s->p.n;
-    if (!(error >= 0)) return run_diverged(run, "the density is not finite");
+    if (!(error >= 0)) return run_diverged(run, "the density is not a number");
     if (k == most || error <= tolerance) {
       run_iterations(run, "density", k, error, fixed > 0 || error <= tolerance);
       return OK;
@@ -147,32 +155,24 @@ static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
 const struct solver solver_pbf = {
-    .abi = SOLVER_ABI,
-    .name = "pbf",
-    .about = "Position Based Fluids: Jacobi iterations on density constraints of the positions",
-    .paper = "M. Macklin, M. Mueller, Position Based Fluids, ACM Trans. Graph. 32(4) (2013) 104",
-    .doi = "10.1145/2461912.2461984",
-    .differences =
-        "masses: rho_i = sum_j m_j W_ij and m_j in every gradient; the paper sets m = 1\n"
-        "epsilon: in units of 1/dx^2, with a default that keeps the iteration stable at any support\n"
-        "kernels: one kernel for W and grad W, the scene's; the paper takes poly6 and spiky\n"
-        "clamp: lambda <= 0 by default; the paper lets surfaces attract and repels by s_corr\n"
-        "s_corr: off by default; k in units of dx^2, dq in units of the support\n"
-        "velocity: v += dx/dt in every iteration, which is (x* - x)/dt without its cancellation\n"
-        "walls: particles of mass m that do not move, lambda = 0; the paper detects collisions\n"
-        "pressure: p_i = -rho0 sum lambda_i / dt^2 over the iterations; the paper has none\n"
-        "stopping: also by the mean compression; the residual is that after the last correction\n"
-        "no vorticity confinement",
-    .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
-    .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC),
-    .params = params,
-    .num_params = COUNT(params),
-    .fields = fields,
-    .num_fields = COUNT(fields),
-    .state_size = sizeof(state),
-    .start = start,
-    .step = step,
-    .project = NULL,
-    .max_dt = NULL,
-    .stop = NULL,
+  .abi = SOLVER_ABI,
+  .name = "pbf",
+  .about = "Position Based Fluids: Jacobi iterations on density constraints of the positions",
+  .paper = "M. Macklin, M. Mueller, Position Based Fluids, ACM Trans. Graph. 32(4) (2013) 104",
+  .doi = "10.1145/2461912.2461984",
+  .differences = DIFFERENCES,
+  .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
+  .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
+         CAN(PERIODIC) | CAN(MOMENTUM),
+  .params = params,
+  .num_params = COUNT(params),
+  .fields = fields,
+  .num_fields = COUNT(fields),
+  .state_size = sizeof(state),
+  .start = start,
+  .step = step,
+  .project = NULL,
+  .max_dt = NULL,
+  .uses = NULL,
+  .stop = NULL,
 };

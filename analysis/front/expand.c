@@ -76,9 +76,9 @@ static status add_group(struct figure *f, const struct recipe_runs *runs, const 
     .solver = solver, .colour = number_of(solvers, solver), .group = f->num_groups++};
   if (!one.colour) {
     const char *near = nearest_name(solver, (const char *const *)solvers->name, solvers->n);
-    return user_error("%s/recipe.yaml: runs: solvers: '%s' is unknown; %s%s%s", f->folder.text,
-                      solver, near ? "the nearest known name is '" : "see 'sphbench list solvers",
-                      near ? near : "", "'");
+    return yaml_source_refuse(f->recipe->source, "runs", "'%s' is no solver; %s%s%s", solver,
+                              near ? "the nearest known name is '" : "see 'sphbench list solvers",
+                              near ? near : "", "'");
   }
   if (!runs->vary) return add_case(f, runs, one, queue);
   for (unsigned k = 0; k < runs->vary->num_values; k++) {

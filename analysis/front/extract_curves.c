@@ -72,9 +72,9 @@ static status check_column(const struct figure *f, json_t *series, const char *n
     if (n < 256) names[n++] = key;
   }
   const char *near = nearest_name(name, names, n);
-  return user_error("%s/recipe.yaml: extract: columns: the runs have no '%s'%s%s%s", f->folder.text,
-                    name, near ? "; the nearest known name is '" : "", near ? near : "",
-                    near ? "'" : "");
+  return yaml_source_refuse(f->recipe->source, "extract.columns", "the runs have no '%s'%s%s%s",
+                            name, near ? "; the nearest known name is '" : "", near ? near : "",
+                            near ? "'" : "");
 }
 
 static status write_series(struct figure *f, const json_t *facts, const struct figure_case *one,

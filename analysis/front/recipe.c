@@ -1,10 +1,10 @@
 #include "recipe.h"
 
+#include <cyaml/cyaml.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "variants.h"
-#include "yaml_file.h"
 
 /* --- schema: a member of struct `type` under its own name --- */
 
@@ -125,78 +125,92 @@ static status unknown(const char *name)
 
 /* --- what the schema cannot say --- */
 
-static status check_kind(const struct recipe *r, const char *path)
+static status check_frames(const struct recipe *r)
 {
   const struct recipe_extract *e = &r->extract;
-  if (e->kind == EXTRACT_FRAMES) {
-    if (!e->num_times || !e->colour)
-      return user_error("%s: extract: kind frames needs times and colour", path);
-    if (r->num_windows != 4 && r->num_windows != 4 * e->num_times)
-      return user_error(
-        "%s: windows: %u numbers found, allowed is 4 (x0, x1, y0, y1) or 4 for each "
-        "of the %u times",
-        path, r->num_windows, e->num_times);
-    if (r->num_colours != 2)
-      return user_error("%s: colours: %u numbers found, allowed is 2 (lowest, highest)", path,
-                        r->num_colours);
-  } else if (!e->num_columns) {
-    return user_error("%s: extract: columns is missing or empty", path);
-  }
+  if (!e->num_times || !e->colour)
+    return yaml_source_refuse(r->source, "extract", "kind frames needs times and colour");
+  if (r->num_windows != 4 && r->num_windows != 4 * e->num_times)
+    return yaml_source_refuse(r->source, "windows",
+                              "%u numbers found, allowed is 4 (x0, x1, y0, y1), or 4 for each of "
+                              "the %u times",
+                              r->num_windows, e->num_times);
+  if (r->num_colours != 2)
+    return yaml_source_refuse(r->source, "colours", "%u numbers found, expected lowest and highest",
+                              r->num_colours);
   return OK;
 }
 
-static status check(const struct recipe *r, const char *path)
+static status check_runs(const struct recipe *r, const struct recipe_runs *runs, unsigned number)
 {
-  for (unsigned k = 0; k < r->num_runs; k++) {
-    const struct recipe_runs *runs = &r->runs[k];
-    if (runs->vary && !runs->vary->num_values)
-      return user_error("%s: runs: vary: values is missing or empty", path);
-    if (r->extract.kind == EXTRACT_METRIC && !runs->vary)
-      return user_error("%s: extract: kind metric needs a parameter that runs vary", path);
-    for (unsigned i = 0; i < runs->num_set; i++)
-      if (!strchr(runs->set[i], '='))
-        return user_error("%s: runs: set: '%s' found, KEY=VALUE expected", path, runs->set[i]);
-  }
-  return check_kind(r, path);
+  const struct path at = path_of("runs[%u]", number), set = path_of("%s.set", at.text);
+  if (runs->vary && !runs->vary->num_values)
+    return yaml_source_refuse(r->source, at.text, "vary has no values");
+  if (r->extract.kind == EXTRACT_METRIC && !runs->vary)
+    return yaml_source_refuse(r->source, at.text, "kind metric needs a parameter to vary");
+  for (unsigned i = 0; i < runs->num_set; i++)
+    if (!strchr(runs->set[i], '='))
+      return yaml_source_refuse(r->source, set.text, "'%s' found, KEY=VALUE expected",
+                                runs->set[i]);
+  return OK;
+}
+
+static status check(const struct recipe *r)
+{
+  for (unsigned k = 0; k < r->num_runs; k++) TRY(check_runs(r, &r->runs[k], k + 1));
+  if (r->extract.kind == EXTRACT_FRAMES) return check_frames(r);
+  return r->extract.num_columns
+           ? OK
+           : yaml_source_refuse(r->source, "extract", "columns is missing or empty");
 }
 
 /* The runs of the recipe that `runs_of` names become this one's own. */
-static status adopt_runs(struct recipe *r, const struct path *path)
+static status adopt_runs(struct recipe *r)
 {
-  struct recipe *other;
+  struct yaml_source *source;
+  void *data;
   if (!r->runs_of == !r->num_runs)
-    return user_error("%s: either runs or runs_of is needed", path->text);
+    return yaml_source_refuse(r->source, "name", "either runs or runs_of is needed");
   if (!r->runs_of) return OK;
   const struct path folder = recipe_folder(r->runs_of);
   const struct path file = path_of("%s/recipe.yaml", folder.text);
   if (!path_is_file(file.text))
-    return user_error("%s: runs_of: no figure is called '%s'", path->text, r->runs_of);
-  TRY(yaml_file_read(file.text, &recipe_value, (void **)&other));
-  r->runs = other->runs;
-  r->num_runs = other->num_runs;
-  other->runs = NULL;
-  other->num_runs = 0;
+    return yaml_source_refuse(r->source, "runs_of", "no figure is called '%s'", r->runs_of);
+  TRY(yaml_source_read(file.text, &recipe_value, &source, &data));
+  struct recipe *other = data;
   const int chained = other->runs_of != NULL;
-  yaml_file_free(&recipe_value, other);
-  return chained ? user_error("%s: runs_of: '%s' has no runs of its own", path->text, r->runs_of)
+  if (!chained) {
+    r->runs = other->runs;
+    r->num_runs = other->num_runs;
+    other->runs = NULL;
+    other->num_runs = 0;
+  }
+  yaml_source_free(source, other);
+  return chained ? yaml_source_refuse(r->source, "runs_of", "'%s' has no runs of its own",
+                                      r->runs_of)
                  : OK;
 }
 
 status recipe_read(const char *name, struct recipe **recipe)
 {
   const struct path folder = recipe_folder(name), path = path_of("%s/recipe.yaml", folder.text);
+  struct yaml_source *source;
+  void *data;
   *recipe = NULL;
   if (!path_is_file(path.text) && !strchr(name, '/')) return unknown(name);
-  TRY(yaml_file_read(path.text, &recipe_value, (void **)recipe));
-  status result = adopt_runs(*recipe, &path);
-  if (result == OK) result = check(*recipe, path.text);
-  if (result == OK) return OK;
-  recipe_free(*recipe);
-  *recipe = NULL;
+  TRY(yaml_source_read(path.text, &recipe_value, &source, &data));
+  struct recipe *r = data;
+  r->source = source;
+  status result = adopt_runs(r);
+  if (result == OK) result = check(r);
+  if (result == OK)
+    *recipe = r;
+  else
+    recipe_free(r);
   return result;
 }
 
 void recipe_free(struct recipe *recipe)
 {
-  if (recipe) yaml_file_free(&recipe_value, recipe);
+  if (recipe) yaml_source_free(recipe->source, recipe);
 }

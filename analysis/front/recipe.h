@@ -2,6 +2,7 @@
 #ifndef RECIPE_H
 #define RECIPE_H
 #include <stdbool.h>
+#include "../../core/base/yaml_source.h"
 #include "files.h"
 
 /* Runs of one scene: every solver with every value of the varied parameter. */
@@ -31,6 +32,7 @@ struct recipe_overlay {
 enum extract_kind { EXTRACT_FRAMES, EXTRACT_SERIES, EXTRACT_METRIC, EXTRACT_TABLE };
 
 struct recipe {
+  struct yaml_source *source; /* the file, for places in it */
   char *name, *about, *statement;
   int order;     /* of the figures in a report */
   bool standard; /* belongs to --standard */

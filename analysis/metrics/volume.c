@@ -13,48 +13,81 @@ struct nodes {
   float *inner;       /* distance to the nearest point beyond `reach` of all particles [m] */
 };
 
-/* Walks the nodes of the box around `at` in which a ball of radius `radius` lies; calls visit with
- * the distance. */
-typedef void visitor(struct nodes *nodes, long node, double distance, double value);
+struct ball {
+  double at[DIM], radius; /* m */
+  double less;            /* that is taken off the distances to `at` [m] */
+};
+struct slab {
+  long from, to; /* planes of nodes normal to the first axis: what one thread works on */
+};
 
-static void visit_ball(struct nodes *n, const double at[DIM], double radius, double value,
-                       visitor *visit)
+/* Where a ball meets the nodes of a slab: the first and one past the last, per axis; 0 if nowhere.
+ */
+static int nodes_near(const struct nodes *n, const struct ball *b, struct slab slab,
+                      long first[DIM], long end[DIM])
 {
-  long first[DIM], last[DIM], k[DIM];
   for (int d = 0; d < DIM; d++) {
-    first[d] = k[d] = (long)ceil((at[d] - radius - n->low[d]) / n->step[d]);
-    last[d] = (long)floor((at[d] + radius - n->low[d]) / n->step[d]);
-    if (last[d] < first[d]) return;
+    const double at = (b->at[d] - n->low[d]) / n->step[d], reach = b->radius / n->step[d];
+    const long least = d == 0 ? slab.from : 0, most = d == 0 ? slab.to : n->count[d];
+    first[d] = at - reach > (double)least ? (long)ceil(at - reach) : least;
+    end[d] = at + reach < (double)most - 1 ? (long)floor(at + reach) + 1 : most;
+    if (first[d] >= end[d]) return 0;
   }
+  return 1;
+}
+
+/* row[m] = min(row[m], |x| - less) along a row of nodes that is sqrt(rest) away from the centre. */
+static void lower_row(float *row, long nodes, double from, double step, const struct ball *b,
+                      double rest)
+{
+  const double chord = b->radius * b->radius - rest;
+  if (chord < 0) return;
+  const double half = sqrt(chord), skip = (-half - from) / step, stop = (half - from) / step + 2;
+  const long last = stop < (double)nodes ? (long)stop : nodes;
+  const float x0 = (float)from, dx = (float)step, rest2 = (float)rest, less = (float)b->less;
+  for (long m = skip > 0 ? (long)skip : 0; m < last; m++) {
+    const float x = x0 + (float)m * dx, r = sqrtf(rest2 + x * x) - less;
+    row[m] = r < row[m] ? r : row[m];
+  }
+}
+
+/* field = min(field, distance from the ball's centre - less) in the ball, and on some nodes more.
+ */
+static void lower_ball(const struct nodes *n, float *field, const struct ball *b, struct slab slab)
+{
+  const int z = DIM - 1;
+  long first[DIM], end[DIM], k[DIM];
+  if (!nodes_near(n, b, slab, first, end)) return;
+  for (int d = 0; d < DIM; d++) k[d] = first[d];
+  const double from = n->low[z] + (double)first[z] * n->step[z] - b->at[z];
   for (int d = 0; d >= 0;) {
-    double r2 = 0;
+    double rest = 0;
     long node = 0;
-    int exists = 1;
-    for (int e = 0; e < DIM; e++) {
-      const double x = n->low[e] + (double)k[e] * n->step[e] - at[e];
-      long m = k[e];
-      if (n->wraps[e]) m = (m % n->count[e] + n->count[e]) % n->count[e];
-      exists &= m >= 0 && m < n->count[e];
-      node = node * n->count[e] + m;
-      r2 += x * x;
+    for (int e = 0; e < z; e++) {
+      const double x = n->low[e] + (double)k[e] * n->step[e] - b->at[e];
+      rest += x * x;
+      node = (node + k[e]) * n->count[e + 1];
     }
-    if (exists && r2 <= radius * radius) visit(n, node, sqrt(r2), value);
-    for (d = DIM - 1; d >= 0 && ++k[d] > last[d]; d--) k[d] = first[d];
+    lower_row(field + node + first[z], end[z] - first[z], from, n->step[z], b, rest);
+    for (d = DIM - 2; d >= 0 && ++k[d] >= end[d]; d--) k[d] = first[d];
   }
 }
 
-static void near_particle(struct nodes *n, long node, double distance, double unused)
+/* The same for the ball and its periodic images. */
+static void lower_images(const struct nodes *n, float *field, const struct ball *ball,
+                         struct slab slab)
 {
-  (void)unused;
-  if (distance < (double)n->outer[node]) n->outer[node] = (float)distance;
-}
-
-/* The straight way from a point inside to a node that lies `beyond` outside crosses the surface
- * that far before its end. */
-static void near_outside(struct nodes *n, long node, double distance, double beyond)
-{
-  const double to_surface = distance - beyond;
-  if (to_surface < (double)n->inner[node]) n->inner[node] = (float)to_surface;
+  int images = 1;
+  for (int d = 0; d < DIM; d++) images *= n->wraps[d] ? 3 : 1;
+  for (int k = 0; k < images; k++) {
+    struct ball image = *ball;
+    for (int d = 0, rest = k; d < DIM; d++) {
+      const double period = n->step[d] * (double)n->count[d];
+      image.at[d] += n->wraps[d] ? (rest % 3 - 1) * period : 0;
+      rest = n->wraps[d] ? rest / 3 : rest;
+    }
+    lower_ball(n, field, &image, slab);
+  }
 }
 
 static int counts(const struct cloud *c, vec x)
@@ -106,27 +139,48 @@ static void node_position(const struct nodes *n, long node, double at[DIM])
   }
 }
 
+/* outer: the distance to the nearest particle, as far as reach + shell. */
+static void find_outer(struct nodes *n, const struct cloud *c, double shell, struct slab slab)
+{
+  for (int i = 0; i < c->n; i++) {
+    struct ball ball = {{0}, n->reach + shell, 0};
+    if (!counts(c, c->x[i])) continue;
+    for (int d = 0; d < DIM; d++) ball.at[d] = (double)c->x[i].c[d];
+    lower_images(n, n->outer, &ball, slab);
+  }
+}
+
+/* inner: the distance to the surface. The straight way from a point inside to a node `beyond`
+ * outside crosses the surface at least `beyond` before its end, and for one node just there. */
+static void find_inner(struct nodes *n, double shell, struct slab slab)
+{
+  for (long k = 0; k < n->total; k++) {
+    const double beyond = (double)n->outer[k] - n->reach;
+    struct ball ball = {{0}, n->pull + shell + beyond, beyond};
+    if (beyond <= 0 || beyond > shell) continue;
+    node_position(n, k, ball.at);
+    lower_images(n, n->inner, &ball, slab);
+  }
+}
+
 static double volume_on(struct nodes *n, const struct cloud *c)
 {
+  enum { SLABS = 16 };
   double widest = 0, cell = 1, volume = 0;
   for (int d = 0; d < DIM; d++) {
     widest = n->step[d] > widest ? n->step[d] : widest;
     cell *= n->step[d];
   }
-  const double shell = widest * sqrt((double)DIM), far = 10 * n->reach;
-  for (long k = 0; k < n->total; k++) n->outer[k] = n->inner[k] = (float)far;
-  for (int i = 0; i < c->n; i++) {
-    double at[DIM];
-    if (!counts(c, c->x[i])) continue;
-    for (int d = 0; d < DIM; d++) at[d] = (double)c->x[i].c[d];
-    visit_ball(n, at, n->reach + shell, 0, near_particle);
+  for (long k = 0; k < n->total; k++) n->outer[k] = n->inner[k] = (float)(10 * n->reach);
+#pragma omp parallel for schedule(static) if (c->n > 512)
+  for (int k = 0; k < SLABS; k++) {
+    const struct slab slab = {n->count[0] * k / SLABS, n->count[0] * (k + 1) / SLABS};
+    find_outer(n, c, 1.01 * widest, slab);
   }
-  for (long k = 0; k < n->total; k++) {
-    const double beyond = (double)n->outer[k] - n->reach;
-    double at[DIM];
-    if (beyond <= 0 || beyond > shell) continue;
-    node_position(n, k, at);
-    visit_ball(n, at, n->pull + widest + beyond, beyond, near_outside);
+#pragma omp parallel for schedule(static) if (c->n > 512)
+  for (int k = 0; k < SLABS; k++) {
+    const struct slab slab = {n->count[0] * k / SLABS, n->count[0] * (k + 1) / SLABS};
+    find_inner(n, 1.01 * widest, slab);
   }
   for (long k = 0; k < n->total; k++) {
     if ((double)n->outer[k] > n->reach) continue;

@@ -6,9 +6,10 @@
 extern "C" {
 #endif
 
-/* Called before particle memory is first taken, and whenever somebody wants to know. Errors: ERR_SKIPPED where no GPU is there
- * that this variant can use; ERR_RUN once the GPU failed, in a sweep for example, with the place and the reason (what is computed
- * after that means nothing). On the host always OK. */
+/* Called before particle memory is first taken, and whenever somebody wants to know. Errors:
+ * ERR_SKIPPED where no GPU is there that this variant can use; ERR_RUN once the GPU failed, in a
+ * sweep for example, with the place and the reason (what is computed after that means nothing). On
+ * the host always OK. */
 status backend_check(void);
 
 #ifdef __cplusplus

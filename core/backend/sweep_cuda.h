@@ -1,4 +1,4 @@
-/* sweep_cuda.h - sweeps and reductions as kernels: what sweep.h says, where particles live on a GPU.
+/* sweep_cuda.h - sweeps and reductions as kernels: what sweep.h says, for particles on a GPU.
  *
  * A stage is a template argument, so that each has a kernel of its own, and the state is a kernel's
  * argument, so that it is read from constant memory. All is queued in the default stream. */
@@ -9,7 +9,8 @@
 extern "C" {
 #endif
 
-extern int sweep_reversed; /* the first thread takes the last particle: no result may notice (tests) */
+/* The first thread takes the last particle: no result may notice (tests). */
+extern int sweep_reversed;
 
 /* Around the launch of a stage's kernel, which is counted. With SPHBENCH_STAGE_TIMES in the
  * environment it is timed, too, and waited for. An error is kept for backend_check. */
@@ -19,7 +20,7 @@ void launch_end(struct stage_clock *stage, int count);
 /* Room for one number per block of a reduction, in particle memory; NULL: none left. */
 double *reduce_room(int blocks);
 
-/* The sum of those numbers, or the largest of them; 0 or -1e300 of none, NaN once the GPU failed. */
+/* The sum of those numbers, or the largest; 0 or -1e300 of none, NaN once the GPU failed. */
 double reduce_blocks(double *part, int blocks, int largest);
 
 #ifdef __cplusplus
@@ -36,10 +37,10 @@ static inline int launch_blocks(int count)
 
 template <auto stage, class S>
 __global__ void __launch_bounds__(LAUNCH_THREADS)
-sweep_kernel(const __grid_constant__ S s, int count, int reversed)
+  sweep_kernel(const __grid_constant__ S s, int count, int reversed)
 {
-  const int k = (int)(blockIdx.x * LAUNCH_THREADS + threadIdx.x);
-  if (k < count) stage(&s, reversed ? count - 1 - k : k);
+  const unsigned k = blockIdx.x * LAUNCH_THREADS + threadIdx.x;
+  if (k < (unsigned)count) stage(&s, reversed ? count - 1 - (int)k : (int)k);
 }
 
 template <auto stage, class S>
@@ -56,7 +57,7 @@ template <bool largest> __device__ static __forceinline__ double reduce_two(doub
   return largest ? (a > b ? a : b) : a + b;
 }
 
-/* Over the threads of a block, as a fixed tree; called by all of them once. Thread 0 gets the result. */
+/* Over the threads of a block, as a fixed tree; called once, by all. Thread 0 gets the result. */
 template <bool largest, int threads> __device__ static __forceinline__ double reduce_block(double a)
 {
   __shared__ double warp[threads / 32];
@@ -70,10 +71,10 @@ template <bool largest, int threads> __device__ static __forceinline__ double re
 
 template <auto stage, bool largest, class S>
 __global__ void __launch_bounds__(LAUNCH_THREADS)
-reduce_kernel(const __grid_constant__ S s, int count, double *part)
+  reduce_kernel(const __grid_constant__ S s, int count, double *part)
 {
-  const int k = (int)(blockIdx.x * LAUNCH_THREADS + threadIdx.x);
-  const double own = k < count ? (double)stage(&s, k) : largest ? -1e300 : 0;
+  const unsigned k = blockIdx.x * LAUNCH_THREADS + threadIdx.x;
+  const double own = k < (unsigned)count ? (double)stage(&s, (int)k) : largest ? -1e300 : 0;
   const double all = reduce_block<largest, LAUNCH_THREADS>(own);
   if (threadIdx.x == 0) part[blockIdx.x] = all;
 }

@@ -78,8 +78,7 @@ status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, 
                         "so that a particle would meet two images of another",
                         P, "xyz"[d], R);
     grid->wraps |= periodic << d;
-    /* a little more than R, since cells and distances are rounded, across a period by its last
-     * digit */
+    /* cells and distances are rounded; across a period, by the last digit of the period */
     side[d] = R * (1 + 1e-6 + 4 * ROUNDING * P / R);
     want[d] = cells_wanted(periodic ? P : (double)high.c[d] - (double)low.c[d], side[d], periodic);
   }
@@ -90,9 +89,9 @@ status grid_fit(struct grid *grid, vec low, vec high, vec period, real support, 
   grid->low = low;
   for (int d = 0; d < DIM; d++) {
     const double turns = floor(want[d] / grid->cells[d]);
-    if (period.c[d] > 0) side[d] = (double)period.c[d] / (turns * grid->cells[d]);
-    /* 1e30 away from a corner, all particles but one would be in the same cell */
-    else if (cut >> d & 1)
+    if (period.c[d] > 0)
+      side[d] = (double)period.c[d] / (turns * grid->cells[d]);
+    else if (cut >> d & 1) /* near the origin: from a corner at 1e30 all look alike */
       grid->low.c[d] = smaller(larger(0, low.c[d]), high.c[d]);
     grid->inv_side.c[d] = (real)(1 / side[d]);
     grid->num_cells *= grid->cells[d];

@@ -15,10 +15,8 @@ extern "C" {
 #endif
 
 struct grid {
-  vec low; /* corner of the cell (0, .., 0) [m]; where the box is cut, the place in it nearest to
-              the origin */
-  vec inv_side; /* 1 / side of a cell per axis [1/m]; a period is a multiple of all cells' sides
-                   together */
+  vec low;      /* corner of the cell (0, .., 0) [m]; on a cut axis any place will do */
+  vec inv_side; /* 1 / side of a cell per axis [1/m]; a period is a multiple of cells times side */
   int cells[DIM];
   int num_cells; /* product of cells */
   int wraps;     /* bit d: the last cell of axis d is followed by its first */

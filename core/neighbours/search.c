@@ -48,7 +48,7 @@ struct job {
   const struct cell_set *from;
   struct listed to[MAX_SETS];
   int num_to, row_offset;
-  int images; /* bit d: on axis d some particle lies outside the period's box */
+  int images; /* bit d: axis d is periodic and any cell may need images, not only one at the seam */
   struct pair_list *list;
   struct pair_scratch *scratch;
 };

@@ -25,11 +25,10 @@ static void snap(vec *low, vec *high, real cell)
   }
 }
 
-static struct grid fit_grid(struct run *run)
+static status fit_grid(struct run *run, struct grid *grid)
 {
   struct view *s = run->view;
   vec low, high;
-  struct grid grid;
   particle_search.positions_bounds(s->p.x, s->p.n, &low, &high);
   if (s->p.n_all > s->p.n)
     for (int d = 0; d < DIM; d++) {
@@ -42,8 +41,7 @@ static struct grid fit_grid(struct run *run)
       low.c[d] = run->scene.low.c[d];
       high.c[d] = run->scene.low.c[d] + run->scene.period.c[d];
     }
-  grid_fit(&grid, low, high, run->scene.period, s->nb.kernel.R, s->p.n_all);
-  return grid;
+  return grid_fit(grid, low, high, run->scene.period, s->nb.kernel.R, s->p.n_all);
 }
 
 static int same_grid(const struct grid *a, const struct grid *b)
@@ -52,7 +50,7 @@ static int same_grid(const struct grid *a, const struct grid *b)
     if (a->low.c[d] != b->low.c[d] || a->cells[d] != b->cells[d] ||
         a->inv_side.c[d] != b->inv_side.c[d])
       return 0;
-  return 1;
+  return a->wraps == b->wraps;
 }
 
 /* Walls are sorted when the grid changes, not in every step. */
@@ -119,14 +117,14 @@ status run_neighbours(struct run *run)
   struct view *s = run->view;
   const enum phase before = clock_enter(PHASE_NEIGHBOURS);
   if (scene_asks(&run->scene) & CAN(PERIODIC)) physics_wrap(s, run->scene.low, run->scene.period);
-  const struct grid grid = fit_grid(run);
+  struct grid grid;
+  status result = fit_grid(run, &grid);
   const int grid_changed = !run->have_grid || !same_grid(&grid, &s->grid);
   s->grid = grid;
   run->have_grid = 1;
   run->has_wall_rows = 0;
   run->density_is_current = 0;
-  status result = OK;
-  if (grid_changed && s->p.n_all > s->p.n) result = sort_walls(run);
+  if (result == OK && grid_changed && s->p.n_all > s->p.n) result = sort_walls(run);
   if (result == OK) result = sort_fluid(run);
   if (result == OK) result = build_list(run, &run->neighbours, SET_FLUID, SET_ALL, &s->nb);
   clock_enter(before);

@@ -88,9 +88,8 @@ static void fill_facts(struct run *run, struct snapshot *out)
   out->pairs = build_pairs;
 }
 
-static struct grid grid_for(const struct snapshot *s)
+static status fit_grid(const struct snapshot *s, struct grid *grid)
 {
-  struct grid grid;
   vec low, high;
   positions_bounds(s->x, s->n_all, &low, &high);
   for (int d = 0; d < DIM; d++)
@@ -98,8 +97,7 @@ static struct grid grid_for(const struct snapshot *s)
       low.c[d] = s->low.c[d];
       high.c[d] = s->low.c[d] + s->period.c[d];
     }
-  grid_fit(&grid, low, high, s->period, (real)s->support, s->n_all);
-  return grid;
+  return grid_fit(grid, low, high, s->period, (real)s->support, s->n_all);
 }
 
 status run_snapshot(struct run *run, struct snapshot *out)
@@ -117,8 +115,8 @@ status run_snapshot(struct run *run, struct snapshot *out)
   out->rho = download(run, "rho", run->step > 0 ? n : 0);
   status result = OK;
   if (!cache || !order || !out->x || !out->v || !out->id) result = status_set(ERR_MEMORY, "no memory for a snapshot");
+  if (result == OK) result = fit_grid(out, &cache->grid);
   if (result == OK) {
-    cache->grid = grid_for(out);
     result = cell_sort(&cache->fluid, &cache->grid, out->x, n, order);
   }
   if (result == OK) {

@@ -106,7 +106,7 @@ static status sample(struct session *s, int last)
     if (result == OK) result = write_frame(s, &now);
     facts_update(&s->facts, &s->plan, run, &s->record);
     if (result == OK) result = result_file_add_series(s->file, &s->facts.run);
-    while (s->frames > 0 && s->t_end * (double)s->next_frame / (double)s->frames <= run->time + run->dt / 2)
+    while (s->frames > 0 && s->t_end > 0 && s->t_end * (double)s->next_frame / (double)s->frames <= run->time + run->dt / 2)
       s->next_frame++;
     clock_enter(before);
   }

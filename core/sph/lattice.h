@@ -3,8 +3,9 @@
 #define LATTICE_H
 #include "kernels.h"
 
-/* One mode exp(i k.x), k = angle/dx [DIM], of  A p_i = sum_j (a_i - a_j).grad W_ij,  a_i = sum_j (p_i + p_j) grad W_ij:
- * its eigenvalue over A's diagonal, which is |sum_j sin(k.x_ij) grad W_ij|^2 / sum_j |grad W_ij|^2 on a lattice. */
+/* One mode exp(i k.x), k = angle/dx [DIM], of the pressure operator of DFSPH and PBF,
+ *   A p_i = sum_j (a_i - a_j).grad W_ij,   a_i = sum_j (p_i + p_j) grad W_ij:
+ * its eigenvalue over A's diagonal, |sum_j sin(k.x_ij) grad W_ij|^2 / sum_j |grad W_ij|^2. */
 static inline double lattice_mode(const struct kernel *kernel, double dx, const double angle[DIM])
 {
   const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
@@ -22,13 +23,12 @@ static inline double lattice_mode(const struct kernel *kernel, double dx, const 
           diagonal += slope * slope;
         }
       }
-  return diagonal > 0
-             ? (wave[0] * wave[0] + wave[1] * wave[1] + wave[2] * wave[2]) / diagonal
-             : 0;
+  return diagonal > 0 ? (wave[0] * wave[0] + wave[1] * wave[1] + wave[2] * wave[2]) / diagonal : 0;
 }
 
-/* The largest eigenvalue theta_max of that A over its diagonal: a Jacobi iteration on it converges for a relaxation below
- * 2/theta_max. Searched along the axis, the face and the space diagonal, where the maxima lie. */
+/* The largest eigenvalue theta_max of that A over its diagonal: a Jacobi iteration on it converges
+ * for a relaxation below 2/theta_max. Searched along the axis and the diagonals, where the maxima
+ * lie (compared with power iterations on periodic lattices for all kernels, R = 1.2 .. 3 dx). */
 static inline double lattice_stiffest(const struct kernel *kernel, double dx)
 {
   const int steps = 32;

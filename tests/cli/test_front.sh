@@ -123,29 +123,29 @@ statement: nothing'
 body='runs:
   - scene: s
     vary: {name: spacing, values: [1, 0.5]}
-extract: {kind: metric, columns: [error], fit: yes}'
+extract: {kind: metric, columns: [error], fit: true}'
 mine() { expect "$1" "$2" figure "$dir/mine" --results "$dir/results" "${@:3}"; }
 
 recipe "$head
 rums: 3
 $body"
-mine 2 'recipe.yaml:4:1: Unexpected key: rums'
+mine 2 "recipe.yaml:4:1: unknown key 'rums'"
 recipe "$head
 runs:
   - scene: s
     solver: [good]
 extract: {kind: series, columns: [error]}"
-mine 2 'recipe.yaml:6:5: Unexpected key: solver'
+mine 2 "recipe.yaml:6:5: unknown key 'solver'"
 recipe "$head
 order: first
 $body"
-mine 2 'recipe.yaml:4:8: Invalid INT value'
+mine 2 "recipe.yaml:4:8: order is 'first'"
 recipe "$head"
-mine 2 'Missing required mapping field'
-recipe ''
-mine 2 'the file is empty'
+mine 2 "recipe.yaml:1:1: the document has no key 'extract'"
+recipe '"
+mine 2 "recipe.yaml is empty"
 recipe "name: [mine"
-mine 2 'recipe.yaml'
+mine 2 "recipe.yaml"
 recipe "$head
 runs: [{scene: s, solvers: [goud]}]
 extract: {kind: series, columns: [error]}"
@@ -153,7 +153,7 @@ mine 2 "the nearest known name is 'good'"
 recipe "$head
 runs: [{scene: s}]
 extract: {kind: metric, columns: [error]}"
-mine 2 'needs a parameter that runs vary'
+mine 2 "recipe.yaml:4:8: kind metric needs a parameter to vary"
 recipe "$head
 runs: [{scene: s}]
 extract: {kind: series, columns: [eror]}"
@@ -162,9 +162,9 @@ mine 2 "the nearest known name is 'error'"
 recipe "$head
 runs: [{scene: s, set: [a]}]
 extract: {kind: series, columns: [error]}"
-mine 2 'KEY=VALUE expected'
+mine 2 "KEY=VALUE expected"
 rm -r "$dir/mine"
-expect 2 "cannot read '$dir/mine/recipe.yaml'" figure "$dir/mine" --results "$dir/results"
+expect 2 "$dir/mine/recipe.yaml: No such file" figure "$dir/mine" --results "$dir/results"
 
 # --- nothing is run twice ---
 

@@ -1,5 +1,5 @@
-/* The memory and the search of a variant's backend against those of the host: the same bits. Trivial for the OpenMP variants,
- * whose backend is the host. */
+/* The memory and the search of a variant's backend against those of the host: the same bits.
+ * Trivial for the OpenMP variants, whose backend is the host. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,7 +23,8 @@ static unsigned random_bits(void)
 }
 static real uniform(void) { return (real)((double)random_bits() / 2147483648.0); }
 
-/* A set of particles: unsorted and sorted positions on the host, and in particle memory (`there`). */
+/* A set of particles: unsorted and sorted positions on the host, and in particle memory (`there`).
+ */
 struct particle_set {
   int n;
   vec *x, *there, *sorted_there;
@@ -82,7 +83,8 @@ static void sort_both(struct particle_set *s, const struct grid *grid)
   const size_t bytes = sizeof(vec) * (size_t)s->n;
   memory_from_host(s->there, s->x, bytes);
   assert_int_equal(cell_sort(&s->cells, grid, s->x, s->n, s->order), OK);
-  assert_int_equal(particle_search.cell_sort(&s->cells_there, grid, s->there, s->n, s->order_there), OK);
+  assert_int_equal(particle_search.cell_sort(&s->cells_there, grid, s->there, s->n, s->order_there),
+                   OK);
   assert_int_equal(s->cells_there.n, s->n);
   assert_same(s->order, s->order_there, sizeof(int) * (size_t)s->n);
   assert_same(s->cells.first, s->cells_there.first, sizeof(int) * ((size_t)grid->num_cells + 1));
@@ -143,7 +145,10 @@ static struct grid grid_of(const struct particle_set *s, int num, real support, 
   return grid;
 }
 
-static void upload(struct particle_set *s) { memory_from_host(s->there, s->x, sizeof(vec) * (size_t)s->n); }
+static void upload(struct particle_set *s)
+{
+  memory_from_host(s->there, s->x, sizeof(vec) * (size_t)s->n);
+}
 
 /* Lists from both of two sets to both, in one list, as a run makes them. */
 static void compare_lists(struct particle_set s[2], struct pair_list *here, struct pair_list *there,
@@ -155,10 +160,12 @@ static void compare_lists(struct particle_set s[2], struct pair_list *here, stru
   sort_both(&s[0], &grid);
   sort_both(&s[1], &grid);
   const int offset[2] = {0, s[0].n};
-  const struct cell_set to[2] = {s[0].cells, s[1].cells}, to_there[2] = {s[0].cells_there, s[1].cells_there};
+  const struct cell_set to[2] = {s[0].cells, s[1].cells},
+                        to_there[2] = {s[0].cells_there, s[1].cells_there};
   for (int k = 0; k < 2; k++) {
     assert_int_equal(pairs_build(here, &grid, &to[k], offset[k], to, offset, 2), OK);
-    assert_int_equal(particle_search.pairs_build(there, &grid, &to_there[k], offset[k], to_there, offset, 2), OK);
+    assert_int_equal(
+      particle_search.pairs_build(there, &grid, &to_there[k], offset[k], to_there, offset, 2), OK);
     assert_same_rows(here, there);
   }
   assert_int_equal(backend_check(), OK);
@@ -186,7 +193,8 @@ static void test_lists(void **unused)
   }
 }
 
-/* Exactly on a lattice many pairs are exactly at the support, and particles exactly on the sides of cells. */
+/* Exactly on a lattice many pairs are exactly at the support, and particles exactly on the sides of
+ * cells. */
 static void test_lists_on_lattice(void **unused)
 {
   (void)unused;
@@ -205,7 +213,8 @@ static void test_lists_on_lattice(void **unused)
   }
 }
 
-/* A particle far away cuts the grid; particles that are not finite have no neighbours and break nothing. */
+/* A particle far away cuts the grid; particles that are not finite have no neighbours and break
+ * nothing. */
 static void test_lists_of_wreckage(void **unused)
 {
   (void)unused;
@@ -293,7 +302,8 @@ static void test_keys(void **unused)
   unsigned long long *there = (unsigned long long *)memory_take(sizeof keys);
   for (int mode = 0; mode < 3; mode++)
     for (int k = 0; k < 5; k++) {
-      for (int i = 0; i < N; i++) keys[i] = mode == 2 ? ~0ULL : (unsigned long long)(random_bits() % 700) << 40;
+      for (int i = 0; i < N; i++)
+        keys[i] = mode == 2 ? ~0ULL : (unsigned long long)(random_bits() % 700) << 40;
       for (int i = 0; mode == 1 && i < N; i += 3) keys[i] = ~0ULL; /* no key */
       memory_from_host(there, keys, sizeof keys);
       const int left = keys_unique(keys, sizes[k]);
@@ -330,14 +340,14 @@ static void test_memory(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_bounds),
-      cmocka_unit_test(test_permute),
-      cmocka_unit_test(test_keys),
-      cmocka_unit_test(test_lists),
-      cmocka_unit_test(test_lists_on_lattice),
-      cmocka_unit_test(test_lists_of_wreckage),
-      cmocka_unit_test(test_empty_sets),
+    cmocka_unit_test(test_memory),
+    cmocka_unit_test(test_bounds),
+    cmocka_unit_test(test_permute),
+    cmocka_unit_test(test_keys),
+    cmocka_unit_test(test_lists),
+    cmocka_unit_test(test_lists_on_lattice),
+    cmocka_unit_test(test_lists_of_wreckage),
+    cmocka_unit_test(test_empty_sets),
   };
   const status machine = backend_check();
   if (machine != OK) {

@@ -1,4 +1,5 @@
-/* Divergence-free SPH against its formulas by double loops (Bender & Koschier 2017), with kappa and alpha as printed. */
+/* Divergence-free SPH against its formulas by double loops (Bender & Koschier 2017), with kappa and
+ * alpha as printed. */
 #include "../../core/sph/lattice.h"
 #include "twin_solvers.h"
 
@@ -8,7 +9,8 @@ struct choices {
   double warm, relaxation;
 };
 
-static double alpha[TWIN_MOST], kappa[TWIN_MOST], kappa_v[TWIN_MOST]; /* of Eq. (11), Alg. 3 and Alg. 2 */
+static double alpha[TWIN_MOST], kappa[TWIN_MOST],
+  kappa_v[TWIN_MOST]; /* of Eq. (11), Alg. 3 and Alg. 2 */
 
 /* Eq. (11) */
 static void twin_factors(const struct cloud *c)
@@ -46,13 +48,16 @@ static double twin_rate(const struct cloud *c, int i)
 {
   double rate = 0;
   for (int j = 0; j < c->n_all; j++)
-    for (int d = 0; d < DIM; d++) rate += c->mass * (c->v[i][d] - c->v[j][d]) * twin_grad(c, i, j, d);
+    for (int d = 0; d < DIM; d++)
+      rate += c->mass * (c->v[i][d] - c->v[j][d]) * twin_grad(c, i, j, d);
   return rate;
 }
 
-/* The total kappa_i that the error asks for: >= 0 against rho0; if free, <= 0 against falling below min(rho_i, rho0). With
- * `divergence` both errors are that of Drho/Dt alone. `each`: a total that only grows. */
-static double twin_total(const struct cloud *c, const struct choices *o, int i, double total, int divergence)
+/* The total kappa_i that the error asks for: >= 0 against rho0; if free, <= 0 against falling below
+ * min(rho_i, rho0). With `divergence` both errors are that of Drho/Dt alone. `each`: a total that
+ * only grows. */
+static double twin_total(const struct cloud *c, const struct choices *o, int i, double total,
+                         int divergence)
 {
   const double theta = o->relaxation, predicted = c->rho[i] + c->dt * twin_rate(c, i);
   const double ceiling = divergence ? c->rho[i] : c->rho0;
@@ -76,7 +81,8 @@ static void twin_solve(struct cloud *c, const struct choices *o, double *total, 
   }
 }
 
-/* Algorithm 1. In the code a total is kept as kappa/rho, so a warm start carries that over to the new density. */
+/* Algorithm 1. The solver keeps totals as kappa/rho, so a warm start carries these over to the new
+ * density. */
 static void twin_step(struct cloud *c, const struct choices *o)
 {
   static double before[TWIN_MOST];
@@ -111,8 +117,8 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-      {"fixed_iterations", o.iterations}, {"clamp", o.clamp},          {"relaxation", o.relaxation},
-      {"warm_density", o.warm},           {"warm_divergence", o.warm}, {NULL, 0},
+    {"fixed_iterations", o.iterations}, {"clamp", o.clamp},          {"relaxation", o.relaxation},
+    {"warm_density", o.warm},           {"warm_divergence", o.warm}, {NULL, 0},
   };
   cloud_make(&run, SIDE, walls, kernel, 11 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
@@ -155,13 +161,14 @@ static void test_viscosity(void **unused)
   compare(0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){2, CLAMPED, 1, 0.5});
 }
 
-/* The projection leaves v = v* - dt sum_j m_j (kappa_i/rho_i + kappa_j/rho_j) grad W, and p = rho kappa. */
+/* The projection is Alg. 2 alone, and p = rho kappa^v. */
 static void test_projection(void **unused)
 {
   (void)unused;
   static struct cloud run, twin;
   const struct choices o = {5, FREE, 1, 0.375};
-  const struct setting settings[] = {{"fixed_iterations", 5}, {"clamp", FREE}, {"relaxation", 0.375}, {NULL, 0}};
+  const struct setting settings[] = {
+    {"fixed_iterations", 5}, {"clamp", FREE}, {"relaxation", 0.375}, {NULL, 0}};
   cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 5);
   twin = run;
   cloud_run(&run, &solver_dfsph, settings, 0);
@@ -171,8 +178,8 @@ static void test_projection(void **unused)
   assert_same_cloud(&run, &twin, 1);
 }
 
-/* The default relaxation: on four (2-D) or six (3-D) nearest neighbours the stiffest mode is sin(k dx) = 1 on every axis, where
- * |sum sin grad W|^2 / sum |grad W|^2 = DIM (2 W')^2 / (2 DIM W'^2) = 2. */
+/* The default relaxation. With only the 2 DIM nearest neighbours the stiffest mode is sin(k dx) = 1
+ * on every axis, where |sum sin grad W|^2 / sum |grad W|^2 = DIM (2 W')^2 / (2 DIM W'^2) = 2. */
 static void test_default_relaxation(void **unused)
 {
   (void)unused;
@@ -182,21 +189,22 @@ static void test_default_relaxation(void **unused)
   const struct setting by_default[] = {{"fixed_iterations", 2}, {NULL, 0}};
   cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 9);
   twin = run;
-  const struct choices o = {2, CLAMPED, 1, (double)(real)(1.4 / lattice_stiffest(&run.kernel, run.dx))};
+  const struct choices o = {2, CLAMPED, 1,
+                            (double)(real)(1.4 / lattice_stiffest(&run.kernel, run.dx))};
   cloud_run(&run, &solver_dfsph, by_default, 1);
   twin_start(&twin);
   twin_step(&twin, &o);
   assert_same_cloud(&run, &twin, 1);
 }
 
-/* By tolerance, the mean rate at which fluid is still compressed is below it: dt/rho0 <max(Drho/Dt, 0)> */
+/* By tolerance, the mean rate of compression that is left is below it: dt/rho0 <max(Drho/Dt, 0)> */
 static void test_tolerance(void **unused)
 {
   (void)unused;
   static struct cloud c;
   const double tolerance = sizeof(real) == 4 ? 1e-5 : 1e-8;
   const struct setting settings[] = {
-      {"divergence_tolerance", tolerance}, {"max_iterations", 1e5}, {NULL, 0}};
+    {"divergence_tolerance", tolerance}, {"max_iterations", 1e5}, {NULL, 0}};
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 13);
   cloud_run(&c, &solver_dfsph, settings, 1);
   double mean = 0;
@@ -206,7 +214,7 @@ static void test_tolerance(void **unused)
   assert_true(mean > 0.1 * tolerance);
 }
 
-/* A particle alone falls freely: D_i = 0 is no division by zero. Two that barely touch keep finite velocities. */
+/* A particle alone falls freely: D_i = 0 is no division by zero. */
 static void test_alone(void **unused)
 {
   (void)unused;
@@ -217,10 +225,12 @@ static void test_alone(void **unused)
   const double v = c.v[0][DIM - 1], x = c.x[0][DIM - 1];
   cloud_run(&c, &solver_dfsph, settings, 3);
   assert_true(fabs(c.v[0][DIM - 1] - (v + 3 * c.dt * c.gravity[DIM - 1])) < TWIN_TOLERANCE);
-  assert_true(fabs(c.x[0][DIM - 1] - (x + 3 * c.dt * v + 6 * c.dt * c.dt * c.gravity[DIM - 1])) < TWIN_TOLERANCE);
+  assert_true(fabs(c.x[0][DIM - 1] - (x + 3 * c.dt * v + 6 * c.dt * c.dt * c.gravity[DIM - 1])) <
+              TWIN_TOLERANCE);
 }
 
-/* v = [+-1] along the line between two particles at 0.999 R: the floor of D leaves them nearly as fast as they were. */
+/* Two particles that approach at a distance of 0.999 R: the floor of D_i leaves them nearly as fast
+ * as they were, where alpha alone would stop them. */
 static void test_barely_touching(void **unused)
 {
   (void)unused;
@@ -241,13 +251,17 @@ static void test_barely_touching(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_free_fluid),         cmocka_unit_test(test_walls),
-      cmocka_unit_test(test_unclamped),          cmocka_unit_test(test_warm_start),
-      cmocka_unit_test(test_clamp_of_each_iteration),
-      cmocka_unit_test(test_viscosity),          cmocka_unit_test(test_projection),
-      cmocka_unit_test(test_default_relaxation), cmocka_unit_test(test_tolerance),
-      cmocka_unit_test(test_alone),
-      cmocka_unit_test(test_barely_touching),
+    cmocka_unit_test(test_free_fluid),
+    cmocka_unit_test(test_walls),
+    cmocka_unit_test(test_unclamped),
+    cmocka_unit_test(test_warm_start),
+    cmocka_unit_test(test_clamp_of_each_iteration),
+    cmocka_unit_test(test_viscosity),
+    cmocka_unit_test(test_projection),
+    cmocka_unit_test(test_default_relaxation),
+    cmocka_unit_test(test_tolerance),
+    cmocka_unit_test(test_alone),
+    cmocka_unit_test(test_barely_touching),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,7 @@ struct choices {
   double epsilon, scorr_k, scorr_dq;
 };
 
-/* Alg. 1, lines 5-7: who is near whom at the predicted positions; kept while the iterations move them */
+/* Alg. 1, lines 5-7: who is near whom at the predicted positions; kept while they move */
 static char near[TWIN_MOST][TWIN_MOST];
 static void twin_neighbours(const struct cloud *c)
 {
@@ -36,7 +36,8 @@ static double twin_lambda(struct cloud *c, const struct choices *o, int i)
 }
 
 /* Eq. (12) - (14) */
-static void twin_shift(const struct cloud *c, const struct choices *o, const double *lambda, int i, double *shift)
+static void twin_shift(const struct cloud *c, const struct choices *o, const double *lambda, int i,
+                       double *shift)
 {
   const double W_dq = (double)kernel_W(&c->kernel, (real)(o->scorr_dq * (double)c->kernel.R), DIM);
   for (int d = 0; d < DIM; d++) shift[d] = 0;
@@ -78,9 +79,13 @@ static void compare(int side, int walls, int kernel, double xsph, int steps, str
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-      {"fixed_iterations", o.iterations}, {"clamp", o.free_},       {"epsilon", o.epsilon},
-      {"scorr_k", o.scorr_k},             {"scorr_n", o.scorr_n},   {"scorr_dq", o.scorr_dq},
-      {NULL, 0},
+    {"fixed_iterations", o.iterations},
+    {"clamp", o.free_},
+    {"epsilon", o.epsilon},
+    {"scorr_k", o.scorr_k},
+    {"scorr_n", o.scorr_n},
+    {"scorr_dq", o.scorr_dq},
+    {NULL, 0},
   };
   cloud_make(&run, side, walls, kernel, 7 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
@@ -118,8 +123,8 @@ static void test_two_steps_with_viscosity(void **unused)
   compare(SIDE, 0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){2, 0, 4, 0.5, 0, 0.25});
 }
 
-/* By tolerance, the mean compression max(C, 0) among the neighbours of the predicted positions is just below it. (All who are
- * near at the last positions compress a little more: newcomers are not in the list.) */
+/* By tolerance, the mean compression max(C, 0) is just below it, among the neighbours of the
+ * predicted positions. (Newcomers, who are near only at the last ones, compress a little more.) */
 static void test_tolerance(void **unused)
 {
   (void)unused;
@@ -146,16 +151,20 @@ static void test_alone(void **unused)
   const double v = c.v[0][DIM - 1], x = c.x[0][DIM - 1];
   cloud_run(&c, &solver_pbf, settings, 3);
   assert_true(fabs(c.v[0][DIM - 1] - (v + 3 * c.dt * c.gravity[DIM - 1])) < TWIN_TOLERANCE);
-  assert_true(fabs(c.x[0][DIM - 1] - (x + 3 * c.dt * v + 6 * c.dt * c.dt * c.gravity[DIM - 1])) < TWIN_TOLERANCE);
+  assert_true(fabs(c.x[0][DIM - 1] - (x + 3 * c.dt * v + 6 * c.dt * c.dt * c.gravity[DIM - 1])) <
+              TWIN_TOLERANCE);
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_free_fluid),          cmocka_unit_test(test_walls),
-      cmocka_unit_test(test_adsorption),          cmocka_unit_test(test_artificial_pressure),
-      cmocka_unit_test(test_two_steps_with_viscosity), cmocka_unit_test(test_tolerance),
-      cmocka_unit_test(test_alone),
+    cmocka_unit_test(test_free_fluid),
+    cmocka_unit_test(test_walls),
+    cmocka_unit_test(test_adsorption),
+    cmocka_unit_test(test_artificial_pressure),
+    cmocka_unit_test(test_two_steps_with_viscosity),
+    cmocka_unit_test(test_tolerance),
+    cmocka_unit_test(test_alone),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* twin_solvers.h - a cloud of particles that a solver and its brute-force twin both advance, and how far apart they end.
- * The twins know no pair lists, no packets and no store: double loops over all particles, in double, from the papers' formulas. */
+/* twin_solvers.h - a cloud of particles that a solver and its brute-force twin both advance, and
+ * how far apart they end. The twins know no pair lists, no packets and no store: double loops over
+ * all particles, in double, from the papers' formulas. */
 #ifndef TWIN_SOLVERS_H
 #define TWIN_SOLVERS_H
 #include <math.h>
@@ -45,13 +46,15 @@ static inline double twin_mass(const struct cloud *c)
   for (int a = -reach; a <= reach; a++)
     for (int b = -reach; b <= reach; b++)
       for (int e = -deep; e <= deep; e++)
-        total += (double)kernel_W(&c->kernel, (real)(c->dx * sqrt((double)(a * a + b * b + e * e))), DIM);
+        total +=
+          (double)kernel_W(&c->kernel, (real)(c->dx * sqrt((double)(a * a + b * b + e * e))), DIM);
   return c->rho0 / total;
 }
 
-/* A jittered lattice, squeezed to 0.92, `side` particles per axis; with walls, its two lowest layers are walls that move
- * along x. All numbers are exact in `real`. */
-static inline void cloud_make(struct cloud *c, int side, int walls, int kernel, unsigned long long seed)
+/* A jittered lattice, squeezed to 0.92, `side` particles per axis; with walls, its two lowest
+ * layers are walls that move along x. All numbers are exact in `real`. */
+static inline void cloud_make(struct cloud *c, int side, int walls, int kernel,
+                              unsigned long long seed)
 {
   memset(c, 0, sizeof *c);
   c->dx = (double)(real)0.1;
@@ -122,7 +125,8 @@ struct setting {
   double value;
 };
 
-static inline void set_values(const struct solver *solver, const struct setting *settings, double *values)
+static inline void set_values(const struct solver *solver, const struct setting *settings,
+                              double *values)
 {
   for (int k = 0; k < solver->num_params; k++) values[k] = solver->params[k].initial;
   for (; settings->name; settings++) {
@@ -163,7 +167,8 @@ static inline struct scene cloud_scene(const struct cloud *c)
 }
 
 /* Advance the cloud's fluid by `steps` steps of the solver, or by one projection with steps = 0. */
-static inline void cloud_run(struct cloud *c, const struct solver *solver, const struct setting *settings, int steps)
+static inline void cloud_run(struct cloud *c, const struct solver *solver,
+                             const struct setting *settings, int steps)
 {
   struct scene scene = cloud_scene(c);
   struct run *run;
@@ -178,7 +183,8 @@ static inline void cloud_run(struct cloud *c, const struct solver *solver, const
   assert_int_equal(now.n, c->n);
   for (int k = 0; k < now.n; k++) {
     const int i = now.id[k];
-    for (int d = 0; d < DIM; d++) c->x[i][d] = (double)now.x[k].c[d], c->v[i][d] = (double)now.v[k].c[d];
+    for (int d = 0; d < DIM; d++)
+      c->x[i][d] = (double)now.x[k].c[d], c->v[i][d] = (double)now.v[k].c[d];
     c->rho[i] = (double)now.rho[k], c->p[i] = (double)now.p[k];
   }
   snapshot_free(&now);
@@ -200,17 +206,21 @@ static inline double apart(const double *a, const double *b, int n, double scale
   for (int i = 0; i < n; i++) most = isfinite(a[i]) ? fmax(most, fabs(a[i] - b[i])) : HUGE_VAL;
   return most / scale;
 }
-/* Positions relative to dx, the rest to its largest value; p to at least what moves a particle by 0.1 dx in a step. */
+/* Positions relative to dx, the rest to its largest value; p to at least what moves a particle by
+ * 0.1 dx in a step. */
 static inline void assert_same_cloud(const struct cloud *a, const struct cloud *b, int steps)
 {
-  const double most = (steps > 1 ? 10 : 1) * TWIN_TOLERANCE; /* a step amplifies what the last one rounded */
+  const double most =
+    (steps > 1 ? 10 : 1) * TWIN_TOLERANCE; /* a step amplifies what the last one rounded */
   const int n = a->n * DIM;
-  const double x = apart(a->x[0], b->x[0], n, a->dx), v = apart(a->v[0], b->v[0], n, largest_of(b->v[0], n));
+  const double x = apart(a->x[0], b->x[0], n, a->dx),
+               v = apart(a->v[0], b->v[0], n, largest_of(b->v[0], n));
   const double rho = apart(a->rho, b->rho, a->n, largest_of(b->rho, a->n));
   const double impulse = 0.1 * b->rho0 * (b->dx / b->dt) * (b->dx / b->dt);
   const double p = apart(a->p, b->p, a->n, fmax(largest_of(b->p, a->n), impulse));
   const int same = x < most && v < most && rho < most && p < most;
-  if (!same || getenv("TWIN_SHOW")) print_message("apart: x %.2g dx, v %.2g, rho %.2g, p %.2g\n", x, v, rho, p);
+  if (!same || getenv("TWIN_SHOW"))
+    print_message("apart: x %.2g dx, v %.2g, rho %.2g, p %.2g\n", x, v, rho, p);
   assert_true(same);
 }
 #endif

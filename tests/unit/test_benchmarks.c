@@ -308,29 +308,55 @@ static void test_column_pressure(void **state)
   end(&s);
 }
 
-/* A cloud whose foremost bottom row ends where the table says, or `off` times as far. */
+/* Put the front of the bottom rows at Z, at time T; returns the front's error so far. */
+static double front_error_at(struct stage *s, double T, double Z)
+{
+  const double width = 0.35;
+  int j = 0;
+  for (int i = 0; i < s->now.n; i++)
+    if ((double)s->now.x[i].c[DIM - 1] < 0.07)
+      s->brute.x[i].c[0] = (real)(Z * width - s->now.dx * (0.5 + 0.001 * (j++ / 40)));
+  s->now.p = NULL;
+  s->now.time = T / sqrt(2 * 9.81 / width);
+  s->now.step++;
+  const struct measures out = measured(s);
+  near_to(VALUE(out, front_position), Z, 1e-3, 1e-3);
+  return VALUE(out, front_error);
+}
+
+/* Samples at the table's times, `off` times as far. */
 static double error_of_front(double off)
 {
   struct stage s = built(&benchmark_dam_break);
-  const double *T, *Z, width = 0.35;
-  const int points = truth_front_points(&T, &Z);
+  const double *T, *Z;
   double error = (double)NAN;
-  s.now.p = NULL;
+  const int points = truth_front_points(&T, &Z);
   for (int k = 0; k < points; k++) {
-    const double front = off * Z[k] * width;
-    int j = 0;
-    for (int i = 0; i < s.now.n; i++)
-      if ((double)s.now.x[i].c[DIM - 1] < 0.07)
-        s.brute.x[i].c[0] = (real)(front - s.now.dx * (0.5 + 0.001 * (j++ / 40)));
-    s.now.time = T[k] / sqrt(2 * 9.81 / width);
-    s.now.step = k + 1;
-    const struct measures out = measured(&s);
-    near_to(VALUE(out, front_position), off * Z[k], 1e-3, 1e-3);
-    error = VALUE(out, front_error);
+    error = front_error_at(&s, T[k], off * Z[k]);
     assert_true(isnan(error) == (T[k] < 0.8));
   }
   end(&s);
   return error;
+}
+
+/* Samples at other times, of a front that moves evenly: linear in between is then exact. */
+static void test_front_between_samples(void **state)
+{
+  struct stage s = built(&benchmark_dam_break);
+  const double *T, *Z;
+  double expected = 0, error = (double)NAN;
+  int compared = 0;
+  (void)state;
+  for (double t = 0; t < 4; t += 0.7) error = front_error_at(&s, t, 1 + 0.8 * t);
+  const int points = truth_front_points(&T, &Z);
+  for (int k = 0; k < points; k++) {
+    if (T[k] < 0.8 || T[k] > 3) continue;
+    expected += fabs((1 + 0.8 * T[k]) / Z[k] - 1);
+    compared++;
+  }
+  end(&s);
+  if (points == 0) skip();
+  near_to(error, expected / compared, 2e-3, 2e-3);
 }
 
 static void test_front(void **state)
@@ -432,6 +458,7 @@ int main(void)
     cmocka_unit_test(test_three_particles),
     cmocka_unit_test(test_column_pressure),
     cmocka_unit_test(test_front),
+    cmocka_unit_test(test_front_between_samples),
     cmocka_unit_test(test_box_refuses),
     cmocka_unit_test(test_tank),
     cmocka_unit_test(test_free_fall),

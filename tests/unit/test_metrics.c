@@ -157,19 +157,22 @@ static void test_planted_pair_is_found(void **state)
   end(&s, &b);
 }
 
-/* Gamma of one deep particle by hand: a ring of neighbours shifted, against the formula in the
- * lattice of ten, with the sums written out once more. */
+static double sq_(double a) { return a * a; }
+
+/* Gamma of a disturbed lattice of nine per axis, with the sums written out once more. */
 static void test_gamma_by_hand(void **state)
 {
   struct brute b;
   struct scene s = lattice(0.9, 0.1);
   (void)state;
-  s.common.jitter = 0.3;
+  s.common.jitter = 0.12;
   scene_apply_jitter(&s);
   const struct snapshot now = snapshot_of(&s, &b);
   const struct kernel kernel = kernel_make(KERNEL_CUBIC, (real)0.25, DIM);
   const double full = now.rho0 / now.mass;
-  double *sum = (double *)calloc((size_t)now.n, sizeof *sum), printed = 0, excess = 0;
+  double *sum = (double *)calloc((size_t)now.n, sizeof *sum);
+  double printed = 0, excess = 0, deep = 0;
+  int num_deep = 0;
   for (int i = 0; i < now.n; i++)
     for (int j = 0; j < now.n; j++) {
       const vec e = sub(now.x[i], now.x[j]);
@@ -185,11 +188,23 @@ static void test_gamma_by_hand(void **state)
         g[d] += V * (double)kernel_dW(&kernel, (real)r, DIM) * (double)e.c[d] / r;
     }
     for (int d = 0; d < DIM; d++) g2 += g[d] * g[d];
-    printed += pow((now.rho0 - now.mass * sum[i]) / now.rho0, 2) + g2 / weight / weight;
+    const double lack = pow((now.rho0 - now.mass * sum[i]) / now.rho0, 2), tilt = g2 / sq_(weight);
+    int layers = METRICS_LAYERS;
+    for (int d = 0; d < DIM; d++) {
+      const int outside = (int)floor((0.45 - fabs((double)now.x[i].c[d])) / 0.1);
+      layers = outside < layers ? outside : layers;
+    }
+    if (layers == METRICS_LAYERS) {
+      deep += lack + 0.125 * 0.125 * tilt;
+      num_deep++;
+    }
+    printed += lack + tilt;
     excess += fmax(sum[i] / full - 1, 0);
   }
   const struct measures out = measure(&now);
+  assert_int_equal(num_deep, DIM == 2 ? 9 : 27);
   near_to(VALUE(out, gamma_printed), printed / now.n, 1e-9 * printed, 1e-4 * printed);
+  near_to(VALUE(out, gamma_mean), deep / num_deep, 1e-12, 1e-4 * deep / num_deep);
   near_to(VALUE(out, density_error_mean), excess / now.n, 1e-12, 1e-5);
   free(sum);
   end(&s, &b);
@@ -239,11 +254,11 @@ static void test_angular_momentum_in_space(void **state)
   must(scene_add(&s, scene_at(5.2, 7, 9), zero()));
   scene_domain_around(&s, 1);
   struct snapshot now = snapshot_of(&s, &b);
-  b.v[0] = scene_at(0, 0, -4); /* arm 0.1 along x, motion along the last axis, twice */
-  b.v[1] = scene_at(0, 0, 4);
+  b.v[0] = scene_at(0, 0, -4 + 6); /* arm 0.1 along x; a common 6 along the last axis */
+  b.v[1] = scene_at(0, 0, 4 + 6);
   const struct measures out = measure(&now);
   near_to(VALUE(out, angular_momentum), 2 * now.mass * 0.1 * 4, 1e-9 * now.mass, 1e-4 * now.mass);
-  near_to(VALUE(out, linear_momentum), 0, 1e-12, 1e-12);
+  near_to(VALUE(out, linear_momentum), 2 * now.mass * 6, 1e-9 * now.mass, 1e-4 * now.mass);
   end(&s, &b);
 }
 
@@ -367,6 +382,28 @@ static void test_volume_of_spray(void **state)
   assert_true(isnan(occupied_volume(&far)));
 }
 
+/* A block across a periodic border has the volume that it has in the middle of the domain. */
+static void test_volume_across_a_period(void **state)
+{
+  struct scene s = new_scene(0.1);
+  double volume[2];
+  (void)state;
+  must(scene_fill_box(&s, all_axes(-0.5), all_axes(0.5), zero(), NULL));
+  vec period = zero();
+  period.c[0] = 4;
+  for (int k = 0; k < 2; k++) {
+    const struct cloud c = {s.x, s.n, 0.1, all_axes(-2), all_axes(2), period};
+    volume[k] = occupied_volume(&c);
+    for (int i = 0; i < s.n; i++) {
+      const double x = (double)s.x[i].c[0] + 2;
+      s.x[i].c[0] = (real)(x >= 2 ? x - 4 : x);
+    }
+  }
+  near_to(volume[0], 1, DIM == 2 ? 0.03 : 0.06, DIM == 2 ? 0.03 : 0.06);
+  near_to(volume[1], volume[0], 1e-3, 1e-3);
+  scene_free(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -384,6 +421,7 @@ int main(void)
     cmocka_unit_test(test_volume_of_rigid_motion),
     cmocka_unit_test(test_volume_of_stretched_and_collapsed),
     cmocka_unit_test(test_volume_of_spray),
+    cmocka_unit_test(test_volume_across_a_period),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
