@@ -1,9 +1,9 @@
 # Rows of runs by columns of times; particles coloured by one quantity, equal axes, the same colour
 # scale everywhere. A script sets cell_width and cell_height [px] of a picture, the spacing [m] of
-# the particles and step [m] of the axes' marks for each time, and then loads this file.
+# the particles and for each time the step [m] of the axes' marks, and then loads this file.
 
 load 'contents.gp'
-left = 165.0; right = 100.0; top = 44.0; bottom = 56.0; gap = 12.0
+left = 190.0; right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
 width = left + right + columns*cell_width + (columns - 1)*gap
 height = top + bottom + rows*cell_height + (rows - 1)*gap
 load shared.'style.gp'
@@ -11,13 +11,13 @@ load shared.'style.gp'
 # How wide a mark of size 1 is [px], in both terminals.
 px_of_mark = 7.0
 nothing = '/dev/null'
+y_label_offset = 0.3
 
 unset key
 unset grid
 set border 15
-set colorbox vertical user origin screen 1 - (right - 16)/width, bottom/height \
+set colorbox vertical user origin screen 1 - (right - 20)/width, bottom/height \
   size screen 16/width, (height - top - bottom)/height
-set cblabel label_colour offset 0.5,0
 set cbrange [colour_low:colour_high]
 
 x_of(c) = (left + (c - 1)*(cell_width + gap))/width
@@ -38,15 +38,16 @@ do for [r = 1:rows] {
     set ytics step[c] scale 0.5 offset 0.5,0
     if (r == rows) { set format x '%g'; set xlabel 'x [m]' offset 0,0.7 } \
       else { set format x ''; unset xlabel }
-    if (c == 1) { set format y '%g'; set ylabel 'y [m]' offset 1.5,0 } \
+    if (c == 1) { set format y '%g'; set ylabel 'y [m]' offset y_label_offset,0 } \
       else { set format y ''; unset ylabel }
     unset label
     if (r == 1) {
       set label 1 sprintf('t = %.2f s', time[c]) at graph 0.5, screen 1 - 0.5*top/height center
     }
+    if (cell == 1) { set label 4 label_colour at screen 1 - 12/width, screen 0.5 center rotate }
     if (c == 1) { set label 2 row[r] at screen 8/width, graph 0.5 left noenhanced }
     if (note[cell] ne '') {
-      set label 3 note[cell] at graph 0.5, graph 0.5 center textcolor rgb '#777777' noenhanced
+      set label 3 note[cell] at graph 0.5, graph 0.5 center font ',11' textcolor rgb '#666666'
     }
     outline = 0
     do for [k = 1:num_overlays] { if (abs(overlay_time[k] - time[c]) < 1e-6) { outline = k } }

@@ -18,29 +18,36 @@ if (kind eq 'svg') {
 set output picture
 set encoding utf8
 
-# Solver number k of `sphbench list solvers` has line type k: a colour, a mark and a dash of its own,
-# told apart by the colour-blind as well (the first eight: Okabe and Ito).
-set linetype 1 linecolor rgb '#0072b2' linewidth 2 pointtype 5 pointsize 0.9 dashtype solid
-set linetype 2 linecolor rgb '#e69f00' linewidth 2 pointtype 7 pointsize 0.9 dashtype (12,4)
-set linetype 3 linecolor rgb '#d55e00' linewidth 2 pointtype 9 pointsize 1.0 dashtype solid
-set linetype 4 linecolor rgb '#009e73' linewidth 2 pointtype 11 pointsize 1.0 dashtype (8,4,2,4)
-set linetype 5 linecolor rgb '#cc79a7' linewidth 2 pointtype 13 pointsize 1.1 dashtype (4,3)
-set linetype 6 linecolor rgb '#56b4e9' linewidth 2 pointtype 4 pointsize 0.9 dashtype solid
-set linetype 7 linecolor rgb '#7a6a00' linewidth 2 pointtype 6 pointsize 0.9 dashtype (12,4)
-set linetype 8 linecolor rgb '#333333' linewidth 2 pointtype 8 pointsize 1.0 dashtype (8,4,2,4)
-set linetype 9 linecolor rgb '#882255' linewidth 2 pointtype 10 pointsize 1.0 dashtype (4,3)
-set linetype 10 linecolor rgb '#44aa99' linewidth 2 pointtype 12 pointsize 1.1 dashtype solid
-set linetype 11 linecolor rgb '#6a51a3' linewidth 2 pointtype 2 pointsize 0.9 dashtype (12,4)
-set linetype 12 linecolor rgb '#a6761d' linewidth 2 pointtype 3 pointsize 0.9 dashtype (8,4,2,4)
-set linetype cycle 12
+# Solver number k of `sphbench list solvers` has line type k: a colour, a mark and a dash of its
+# own, told apart by the colour-blind as well (after Okabe and Ito); where two curves coincide, the
+# thin dashed one lies on the wide one. Another form of a solver (a recipe's runs with a label) has
+# the same colour, thin and dotted with an open mark: line type 20 + k.
+array hue[12] = ['#0072b2', '#e69f00', '#d55e00', '#009e73', '#a6266e', '#56b4e9', \
+  '#7a6a00', '#333333', '#882255', '#44aa99', '#6a51a3', '#a6761d']
+array full[12] = [5, 7, 9, 11, 13, 5, 7, 9, 11, 13, 2, 3]
+array open[12] = [4, 6, 8, 10, 12, 4, 6, 8, 10, 12, 2, 3]
+do for [k = 1:20] {
+  m = (k - 1) % 12 + 1
+  if (k % 3 == 1) {
+    set linetype k linecolor rgb hue[m] linewidth 3.5 pointtype full[m] dashtype solid
+  }
+  if (k % 3 == 2) {
+    set linetype k linecolor rgb hue[m] linewidth 2 pointtype full[m] dashtype (9,4)
+  }
+  if (k % 3 == 0) {
+    set linetype k linecolor rgb hue[m] linewidth 2.2 pointtype full[m] dashtype solid
+  }
+  set linetype 20 + k linecolor rgb hue[m] linewidth 1.4 pointtype open[m] dashtype (2,3)
+}
 
 # What is measured or exact, not computed by a solver.
 set style line 100 linecolor rgb '#000000' linewidth 1.2 pointtype 6 pointsize 1.1 dashtype solid
 
 set border 3 linecolor rgb '#444444' linewidth 1
 set tics nomirror out scale 0.6 textcolor rgb '#222222'
-set grid linecolor rgb '#e3e3e3' linewidth 0.7 dashtype solid
+set grid linecolor rgb '#dddddd' linewidth 1 dashtype solid
 set key noenhanced spacing 1.2 samplen 3
+set pointsize 0.8
 set datafile missing 'nan'
 
 # Perceptually even from dark to light (a sampling of viridis, by S. van der Walt and N. Smith).

@@ -57,6 +57,7 @@ static status add_case(struct figure *f, const struct recipe_runs *runs, struct 
   struct run_request request = request_of(runs);
   request.solver = one.solver;
   request.value = one.value;
+  if (runs->label) one.colour += 20;
   struct figure_case *more = realloc(f->cases, (size_t)(f->n + 1) * sizeof *more);
   if (!more) return status_set(ERR_MEMORY, "out of memory");
   f->cases = more;

@@ -12,7 +12,7 @@ status solver_names(struct names *names);
 /* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
 struct figure_case {
   int run;     /* in the queue */
-  int colour;  /* number of the solver, from 1 */
+  int colour;  /* number of the solver, from 1; 20 more where a label tells the runs from others */
   int group;   /* cases of one curve have the same */
   char *curve; /* the solver, and what the recipe adds to tell it from itself */
   char *label; /* the same with the value of the varied parameter: "name, spacing 0.01" */

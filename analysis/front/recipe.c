@@ -186,9 +186,9 @@ static status adopt_runs(struct recipe *r)
     other->num_runs = 0;
   }
   yaml_source_free(source, other);
-  return chained ? yaml_source_refuse(r->source, "runs_of", "'%s' has no runs of its own",
-                                      r->runs_of)
-                 : OK;
+  return chained
+           ? yaml_source_refuse(r->source, "runs_of", "'%s' has no runs of its own", r->runs_of)
+           : OK;
 }
 
 status recipe_read(const char *name, struct recipe **recipe)

@@ -96,11 +96,20 @@ static void put_head(FILE *out, const json_t *columns)
   fputc('\n', out);
 }
 
+static void put_names(FILE *page, const json_t *columns)
+{
+  size_t k;
+  json_t *column;
+  json_array_foreach(columns, k, column)
+  {
+    html_put(page, k ? ", %s" : "%s", json_string_value(column));
+  }
+}
+
 /* All files that have the columns of file `first`, as one CSV link. */
 static void put_csv(FILE *page, const struct report_figure *figure, json_t *files, size_t first)
 {
   json_t *columns = json_object_get(json_array_get(files, first), "columns");
-  const char *what = json_string_value(json_array_get(columns, json_array_size(columns) - 1));
   char *csv = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&csv, &size);
@@ -114,7 +123,9 @@ static void put_csv(FILE *page, const struct report_figure *figure, json_t *file
   html_put(page, " <a download=\"%s-%s.csv\" href=\"data:text/csv;base64,",
            text_in(figure->facts, "name"), text_in(json_array_get(files, first), "file"));
   html_base64(page, csv, size);
-  html_put(page, "\">%s</a>", what);
+  fputs("\">", page);
+  put_names(page, columns);
+  fputs("</a>", page);
   free(csv);
 }
 
@@ -129,9 +140,12 @@ static int seen_before(json_t *files, size_t k)
 static void put_data(FILE *page, const struct report_figure *figure)
 {
   json_t *files = json_object_get(figure->facts, "files");
-  fputs("<span>Data (CSV):", page);
+  fputs("<span>Data as CSV:", page);
   for (size_t k = 0; k < json_array_size(files); k++)
-    if (!seen_before(files, k)) put_csv(page, figure, files, k);
+    if (!seen_before(files, k)) {
+      if (k > 0) fputs(";", page);
+      put_csv(page, figure, files, k);
+    }
   fputs("</span>", page);
 }
 

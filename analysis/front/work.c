@@ -227,18 +227,19 @@ static void show(struct work *w, const char *const *notes)
 {
   double done = 0, all = 0;
   const double guess = typical(w);
-  const char *note = "";
+  const char *name = "";
   for (int k = 0; k < w->queue->n; k++) {
     const struct run *run = &w->queue->run[k];
     if (!notes[k]) continue; /* was finished before */
     const double known = expected_time(w->queue, run);
     const double whole = run->finished ? run->seconds : known > 0 ? known : guess;
     const double so_far = run->finished ? whole : running_for(w, k);
-    if (!run->finished && so_far > 0) note = notes[k];
+    if (!run->finished && so_far > 0) name = notes[k];
     all += whole;
     done += so_far < 0.95 * whole || run->finished ? so_far : 0.95 * whole;
   }
-  if (all > 0) progress_show(&w->bar, done / all, note);
+  const struct path note = path_of("%d of %d, %s", w->queue->done, w->todo, name);
+  if (all > 0) progress_show(&w->bar, done / all, note.text);
 }
 
 /* --- the loop --- */

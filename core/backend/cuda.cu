@@ -1,8 +1,8 @@
-/* The backend that keeps particles in a GPU's memory: that memory, launches, and sums over blocks.
- */
+/* The backend that keeps particles in a GPU's memory: that memory, and what launches share. */
 #include "backend.h"
 #include "cuda.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum {

@@ -4,7 +4,7 @@
 #ifndef CUDA_BACKEND_H
 #define CUDA_BACKEND_H
 #include "../base/memory.h"
-#include "../sph/sweep.h"
+#include "sweep_cuda.h"
 
 /* Is `error` none? The first one is kept, with `what` was done: most calls can tell nobody. */
 int works(cudaError_t error, const char *what);
@@ -30,4 +30,14 @@ void *room_of(struct room *room, size_t bytes);
 
 /* Make room for `wanted` ints in place of *capacity, of which the first `kept` stay. */
 status grow(int **block, size_t *capacity, size_t wanted, size_t kept, const char *what);
+
+/* sorted, order = key, value [n each] in ascending order of the keys, which are >= 0 and have at
+ * most so many bits; equal keys keep their order. */
+status device_sort_by(const int *key, int *sorted, const int *value, int *order, int n, int bits);
+
+/* before[i] = count[0] + .. + count[i-1] [n] */
+status device_sum_before(const int *count, long long *before, int n);
+
+/* keys_unique of neighbours.h, for keys on the GPU */
+int device_keys_unique(unsigned long long *keys, int n);
 #endif

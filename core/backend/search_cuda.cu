@@ -1,12 +1,8 @@
-/* The search on a GPU: bounding boxes, sorting, pair lists. It is compiled without contraction of
- * products and sums, as the search on the host is, so that both list the same pairs. No other file
- * includes CUB, whose headers are slow to compile. */
+/* The search on a GPU: bounding boxes, sorting by cell, pair lists. It is compiled without
+ * contraction of products and sums, as the search on the host is, so that both list the same
+ * pairs. */
 #include "../neighbours/neighbours.h"
 #include "cuda.h"
-
-#include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
-#include <cub/device/device_select.cuh>
 
 #include <assert.h>
 #include <limits.h>
@@ -92,19 +88,6 @@ static int device_positions_bounds(const vec *x, int n, vec *low, vec *high)
 
 /* --- sorting --------------------------------------------------------------------------------- */
 
-/* Call one of CUB's algorithms, given as call(room, &bytes): first for the room that it needs, then
- * to do its work. */
-template <class F> static status with_room(const char *what, F call)
-{
-  static struct room room;
-  size_t bytes = 0;
-  if (!works(call((void *)NULL, bytes), what)) return failed();
-  void *data = room_of(&room, bytes + 1);
-  if (!data)
-    return status_set(ERR_MEMORY, "no memory on the GPU for '%s' (%zu bytes)", what, bytes);
-  return works(call(data, bytes), what) ? OK : failed();
-}
-
 __global__ void __launch_bounds__(LAUNCH_THREADS)
   cells_kernel(const __grid_constant__ struct grid grid, const vec *x, int n, int *cell, int *index)
 {
@@ -152,10 +135,7 @@ static status device_cell_sort(struct cell_set *set, const struct grid *grid, co
   if (n > 0) {
     cells_kernel<<<launch_blocks(n), LAUNCH_THREADS>>>(*grid, x, n, cell, index);
     if (!launched("cells of particles")) return failed();
-    TRY(with_room("cell_sort", [=](void *room, size_t &bytes) {
-      return cub::DeviceRadixSort::SortPairs(room, bytes, cell, sorted, index, order, n, 0,
-                                             bits_of(num_cells - 1));
-    }));
+    TRY(device_sort_by(cell, sorted, index, order, n, bits_of(num_cells - 1)));
   }
   first_kernel<<<launch_blocks(num_cells + 1), LAUNCH_THREADS>>>(sorted, n, set->first, num_cells);
   set->n = n;
@@ -286,10 +266,7 @@ static status count_pairs(const struct job *job, long long **before, long long *
     return status_set(ERR_MEMORY, "no memory on the GPU to count the pairs of %d particles", n);
   count_kernel<<<launch_blocks(n + 1), LAUNCH_THREADS>>>(*job, count);
   if (!launched("pairs_build")) return failed();
-  TRY(with_room("sum of pairs", [=](void *room, size_t &bytes) {
-    return cub::DeviceScan::ExclusiveScan(room, bytes, count, sum, ::cuda::std::plus<>{}, 0LL,
-                                          n + 1);
-  }));
+  TRY(device_sum_before(count, sum, n + 1));
   memory_to_host(total, sum + n, sizeof *total);
   *before = sum;
   return failed();
@@ -348,36 +325,6 @@ static status device_pairs_build(struct pair_list *list, const struct grid *grid
   list->pairs.periodic = 0;
   for (int d = 0; d < DIM; d++) list->pairs.periodic |= grid->period.c[d] > 0;
   return OK;
-}
-
-/* --- keys ------------------------------------------------------------------------------------ */
-
-/* keys[0 .. *number-1] = the keys without repetitions, in ascending order */
-static status sort_and_drop(unsigned long long *keys, int n, unsigned long long *sorted,
-                            int *number)
-{
-  TRY(with_room("keys_unique", [=](void *room, size_t &bytes) {
-    return cub::DeviceRadixSort::SortKeys(room, bytes, keys, sorted, n);
-  }));
-  return with_room("keys_unique", [=](void *room, size_t &bytes) {
-    return cub::DeviceSelect::Unique(room, bytes, sorted, keys, number, n);
-  });
-}
-
-static int device_keys_unique(unsigned long long *keys, int n)
-{
-  const unsigned long long none = ~0ULL;
-  static struct room sorted_room, number_room;
-  if (n <= 0) return n;
-  void *const sorted = room_of(&sorted_room, sizeof *keys * (size_t)n);
-  int *const number = (int *)room_of(&number_room, sizeof(int)), unique = 0;
-  if (!sorted || !number) return -1;
-  if (sort_and_drop(keys, n, (unsigned long long *)sorted, number) != OK) return -1;
-  memory_to_host(&unique, number, sizeof unique);
-  if (failed() != OK) return -1;
-  unsigned long long last = none;
-  memory_to_host(&last, keys + unique - 1, sizeof last);
-  return last == none ? unique - 1 : unique;
 }
 
 /* --- the search as a table ------------------------------------------------------------------- */

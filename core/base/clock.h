@@ -23,7 +23,7 @@ double clock_now(void);
 /* Time spent from now on belongs to `phase`; returns the phase before, to be restored. */
 enum phase clock_enter(enum phase phase);
 
-/* Waits for work that was only queued so far, at the end of each phase; set by backends that queue. */
+/* Waits for work that was only queued, at the end of each phase; set by backends that queue. */
 extern void (*clock_settle)(void);
 
 /* Seconds spent in each phase so far [NUM_PHASES], and their names. */

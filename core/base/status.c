@@ -5,14 +5,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char sentence[2048];
+enum { ROOM = 2048, TAIL = 512 };
+static char sentence[ROOM];
+
+/* Of a sentence that is too long the middle goes: at its end stands what is allowed. */
+static void keep_tail(int length, const char *format, va_list arguments)
+{
+  char *whole = malloc((size_t)length + 1);
+  if (!whole) return;
+  vsnprintf(whole, (size_t)length + 1, format, arguments);
+  snprintf(sentence + ROOM - TAIL, TAIL, " ... %s", whole + length - (TAIL - 6));
+  free(whole);
+}
 
 status status_set(status code, const char *format, ...)
 {
-  va_list arguments;
+  va_list arguments, again;
   va_start(arguments, format);
-  vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_copy(again, arguments);
+  const int length = vsnprintf(sentence, sizeof sentence, format, arguments);
+  if (length >= ROOM) keep_tail(length, format, again);
+  va_end(again);
   va_end(arguments);
+  for (char *c = sentence; *c; c++) /* what a user typed may hold line ends and escapes */
+    if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
   return code;
 }
 

@@ -20,6 +20,8 @@ extern const struct benchmark *const benchmarks[];
 extern const int num_solvers, num_benchmarks;
 const struct solver *solver_find(const char *name);
 const struct benchmark *benchmark_find(const char *name);
+/* The solver of that name. Errors: ERR_USER with the nearest known one; also for NULL. */
+status solver_require(const char *name, const struct solver **solver);
 
 /* Everything that was resolved from the options; released by plan_free. */
 struct plan {
@@ -34,6 +36,8 @@ struct plan {
 /* Resolve scene, solver and parameters, and fill the scene with particles. Errors: ERR_USER with one sentence. A scene of the
  * other dimension is not an error of the user's: *other_dim says which one it wants (else 0). */
 status plan_make(const struct options *o, struct plan *plan, int *other_dim);
+/* Report the values that the solver has put in place of "auto" when it started. */
+void plan_resolve(struct plan *plan, const struct run *run);
 void plan_free(struct plan *plan);
 
 /* Samples of metrics over a run, and what each step took. */
@@ -43,9 +47,11 @@ struct record {
   double *step[3];                   /* time, iterations, residual [steps] */
   long steps_counted, iterations_counted;
   struct measures last;
+  struct metrics_start start;
+  int has_start;
 };
 enum { SAMPLE_TIME = NUM_METRICS, SAMPLE_ITERATIONS, SAMPLE_RESIDUAL };
-status record_sample(struct record *record, struct run *run, struct setting *setting, const struct snapshot *now);
+status record_sample(struct record *record, struct run *run, struct setting *setting, struct snapshot *now);
 status record_step(struct record *record, const struct run *run);
 void record_free(struct record *record);
 

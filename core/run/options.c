@@ -8,17 +8,34 @@
 
 static const struct {
   const char *flag, *argument, *meaning;
+  int verbs;
   size_t offset;
 } flags[] = {
-#define O(member, flag, argument, meaning) {flag, argument, meaning, offsetof(struct options, member)},
-    OPTION_LIST(O)
+#define O(member, flag, argument, verbs, meaning)                                                  \
+  {flag, argument, meaning, verbs, offsetof(struct options, member)},
+  OPTION_LIST(O)
 #undef O
-#define O(member, flag, meaning) {flag, NULL, meaning, offsetof(struct options, member)},
+#define O(member, flag, verbs, meaning)                                                            \
+  {flag, NULL, meaning, verbs, offsetof(struct options, member)},
     SWITCH_LIST(O)
 #undef O
-    {"--set", "KEY=VALUE", "a parameter of the solver or the scene (sphbench show NAME)", 0},
+  {"--set", "KEY=VALUE", "a parameter of the solver or the scene (sphbench show NAME)", FOR_RUN,
+   offsetof(struct options, num_sets)},
 };
 enum { NUM_FLAGS = sizeof flags / sizeof *flags };
+
+static int is_flag(const char *text)
+{
+  int known = strncmp(text, "--", 2) == 0;
+  for (int k = 0; k < NUM_FLAGS; k++) known |= strcmp(flags[k].flag, text) == 0;
+  return known;
+}
+
+static int verb_bit(const char *verb)
+{
+  if (verb && strcmp(verb, "run") == 0) return FOR_RUN;
+  return verb && strcmp(verb, "speed") == 0 ? FOR_SPEED : FOR_LISTS;
+}
 
 static status unknown_flag(const char *flag)
 {
@@ -43,27 +60,35 @@ static status take_flag(struct options *o, int k, const char *value)
   return OK;
 }
 
+/* The value of flag k at argv[*i]: behind its '=', or the next argument, unless that is a flag. */
+static status find_value(int k, int argc, char **argv, int *i, const char **value)
+{
+  const size_t length = strlen(flags[k].flag);
+  *value = NULL;
+  if (argv[*i][length] == '=')
+    *value = argv[*i] + length + 1;
+  else if (*i + 1 < argc && !is_flag(argv[*i + 1]))
+    *value = argv[++*i];
+  if (*value && **value) return OK;
+  return user_error("%s needs a value: %s", flags[k].flag, flags[k].argument);
+}
+
 /* One flag at argv[*i], as "--flag value" or "--flag=value". */
 static status parse_flag(struct options *o, int argc, char **argv, int *i)
 {
-  const char *text = argv[*i], *equals = strchr(text, '=');
-  const size_t length = equals && strncmp(text, "--", 2) == 0 ? (size_t)(equals - text) : strlen(text);
-  for (int k = 0; k < NUM_FLAGS; k++) {
-    if (strlen(flags[k].flag) != length || strncmp(flags[k].flag, text, length) != 0) continue;
-    const char *value = NULL;
-    if (flags[k].argument) {
-      if (o->verb && strcmp(flags[k].flag, "--json") == 0 && (!strcmp(o->verb, "list") || !strcmp(o->verb, "show"))) {
-        o->json_output = 1; /* without a file: to standard output */
-        return OK;
-      }
-      value = text[length] == '=' ? text + length + 1 : *i + 1 < argc ? argv[++*i] : NULL;
-      if (!value) return user_error("%s needs a value: %s", flags[k].flag, flags[k].argument);
-    } else if (text[length] == '=') {
-      return user_error("%s takes no value", flags[k].flag);
-    }
-    return take_flag(o, k, value);
-  }
-  return unknown_flag(text);
+  const char *text = argv[*i], *value = NULL;
+  const size_t length = strncmp(text, "--", 2) == 0 ? strcspn(text, "=") : strlen(text);
+  int k = 0;
+  while (k < NUM_FLAGS && (strlen(flags[k].flag) != length || strncmp(flags[k].flag, text, length)))
+    k++;
+  if (k == NUM_FLAGS) return unknown_flag(text);
+  const int to_stdout = verb_bit(o->verb) == FOR_LISTS && strcmp(flags[k].flag, "--json") == 0;
+  if ((to_stdout || !flags[k].argument) && text[length] == '=')
+    return user_error("%s takes no value", flags[k].flag);
+  o->json_output |= to_stdout; /* list and show write to standard output, not to a file */
+  if (to_stdout) return OK;
+  if (flags[k].argument) TRY(find_value(k, argc, argv, i, &value));
+  return take_flag(o, k, value);
 }
 
 status options_parse(struct options *o, int argc, char **argv)
@@ -85,16 +110,40 @@ status options_parse(struct options *o, int argc, char **argv)
   return OK;
 }
 
-void options_help(void)
+/* Was flag k given? A pointer, a switch or the number of --set. */
+static int is_given(const struct options *o, int k)
 {
+  const char *member = (const char *)o + flags[k].offset;
+  if (flags[k].argument && strcmp(flags[k].flag, "--set")) return *(const char *const *)member != NULL;
+  return *(const int *)member != 0;
+}
+
+status options_check(const struct options *o)
+{
+  for (int k = 0; k < NUM_FLAGS; k++)
+    if (is_given(o, k) && !(flags[k].verbs & verb_bit(o->verb)))
+      return user_error("%s takes no %s; 'sphbench %s --help' lists its flags", o->verb,
+                        flags[k].flag, o->verb);
+  return OK;
+}
+
+void options_help(const struct options *o)
+{
+  const int bit = verb_bit(o->verb);
+  printf("sphbench %s%s\n", o->verb,
+         bit == FOR_RUN     ? " SCENE --solver NAME [FLAG]..."
+         : bit == FOR_LISTS ? " [NAME] [FLAG]..."
+                            : " [FLAG]...");
   for (int k = 0; k < NUM_FLAGS; k++) {
     char left[64];
+    if (!(flags[k].verbs & bit)) continue;
     snprintf(left, sizeof left, "%s %s", flags[k].flag, flags[k].argument ? flags[k].argument : "");
     printf("  %-24s %s\n", left, flags[k].meaning);
   }
 }
 
-status option_whole(const char *flag, const char *text, long low, long high, long initial, long *value)
+status option_whole(const char *flag, const char *text, long low, long high, long initial,
+                    long *value)
 {
   *value = initial;
   if (!text) return OK;

@@ -14,21 +14,23 @@ static status unknown(const char *kind, const char *name, const char *const *nam
   return user_error("unknown %s '%s'; 'sphbench list %ss' lists them", kind, name, kind);
 }
 
-static status find_solver(const struct options *o, const struct solver **solver)
+status solver_require(const char *name, const struct solver **solver)
 {
-  if (!o->solver) return user_error("run needs --solver NAME; 'sphbench list solvers' lists them");
-  *solver = solver_find(o->solver);
+  if (!name) return user_error("run needs --solver NAME; 'sphbench list solvers' lists them");
+  *solver = solver_find(name);
   if (*solver) return OK;
   const char *names[64];
-  for (int k = 0; k < num_solvers && k < 64; k++) names[k] = solvers[k]->name;
-  return unknown("solver", o->solver, names, num_solvers);
+  int n = 0;
+  for (; n < num_solvers && n < 64; n++) names[n] = solvers[n]->name;
+  return unknown("solver", name, names, n);
 }
 
 static status unknown_scene(const char *name)
 {
   const char *names[64];
-  for (int k = 0; k < num_benchmarks && k < 64; k++) names[k] = benchmarks[k]->name;
-  return unknown("scene", name, names, num_benchmarks);
+  int n = 0;
+  for (; n < num_benchmarks && n < 64; n++) names[n] = benchmarks[n]->name;
+  return unknown("scene", name, names, n);
 }
 
 static int looks_like_file(const char *name)
@@ -166,7 +168,7 @@ static status fill_scene(const struct options *o, struct setting *set)
 status plan_make(const struct options *o, struct plan *plan, int *other_dim)
 {
   memset(plan, 0, sizeof *plan);
-  TRY(find_solver(o, &plan->solver));
+  TRY(solver_require(o->solver, &plan->solver));
   TRY(open_setting(o, &plan->setting));
   TRY(check_dimension(o, &plan->setting, other_dim));
   if (*other_dim) return OK;
@@ -176,6 +178,16 @@ status plan_make(const struct options *o, struct plan *plan, int *other_dim)
   TRY(set_values(o, plan));
   TRY(fill_scene(o, &plan->setting));
   return report_values(plan);
+}
+
+void plan_resolve(struct plan *plan, const struct run *run)
+{
+  const struct solver *solver = plan->solver;
+  struct fact *fact = plan->parameters + plan->num_parameters - 1 - solver->num_params;
+  for (int k = 0; k < solver->num_params; k++, fact++) {
+    const real taken = *(const real *)((const char *)run->state + solver->params[k].offset);
+    if (!fact->word && taken != (real)fact->value) fact->value = (double)taken;
+  }
 }
 
 void plan_free(struct plan *plan)

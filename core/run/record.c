@@ -18,11 +18,16 @@ static status grow(double **columns, int n, long rows, long *room)
   return OK;
 }
 
-status record_sample(struct record *r, struct run *run, struct setting *set, const struct snapshot *now)
+status record_sample(struct record *r, struct run *run, struct setting *set, struct snapshot *now)
 {
   const enum phase before = clock_enter(PHASE_METRICS);
   status result = grow(r->sample, NUM_METRICS + 3, r->rows, &r->row_room);
+  if (result == OK && !r->has_start) {
+    result = metrics_start_make(now, &r->start);
+    r->has_start = result == OK;
+  }
   if (result == OK) {
+    now->start = &r->start;
     for (int k = 0; k < NUM_METRICS; k++) r->last.value[k] = NAN;
     metrics_measure(now, &r->last);
     if (set->benchmark && set->benchmark->measure) set->benchmark->measure(set->self, now, &r->last);
@@ -55,5 +60,6 @@ void record_free(struct record *r)
 {
   for (int k = 0; k < NUM_METRICS + 3; k++) free(r->sample[k]);
   for (int k = 0; k < 3; k++) free(r->step[k]);
+  if (r->has_start) metrics_start_free(&r->start);
   memset(r, 0, sizeof *r);
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../base/memory.h"
 
@@ -19,6 +20,7 @@ unsigned scene_asks(const struct scene *scene)
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
     if (scene->period.c[d] > 0) asks |= CAN(PERIODIC);
+    else asks |= CAN(FREE_SURFACE);
   }
   return asks;
 }
@@ -112,7 +114,8 @@ static double reference_speed(const struct scene *s)
   }
   for (int d = 0; d < DIM; d++)
     fall += fabs((double)s->gravity.c[d]) * (double)(s->high.c[d] - s->low.c[d]);
-  return sqrt(fastest) + sqrt(2 * fall);
+  /* a disturbed start may also be set free at a tenth of a spacing per step */
+  return sqrt(fastest) + sqrt(2 * fall) + 0.1 * s->common.spacing / s->common.dt;
 }
 
 static void fill_view(struct run *run)
@@ -129,6 +132,19 @@ static void fill_view(struct run *run)
   v->mass = (real)lattice_mass(c->rho0, c->spacing, &kernel);
   v->xsph = (real)c->xsph;
   v->gravity = run->scene.gravity;
+}
+
+/* Fields and the pair list of a full lattice: what any run needs. A system that promises more memory
+ * than it has would end it later, without a sentence. */
+static status check_memory(const struct run *run)
+{
+  const double n = run->view->p.n_all, s = run->scene.common.support;
+  const double neighbours = DIM == 2 ? 3.14 * s * s : 4.19 * s * s * s;
+  const double needed = n * (sizeof(int) * neighbours + 4 * sizeof(vec));
+  const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+  if (there <= 0 || needed < there) return OK;
+  return user_error("%.0f particles with about %.0f neighbours each need %.3g GB, this machine has "
+                    "%.3g GB", n, neighbours, 1e-9 * needed, 1e-9 * there);
 }
 
 status run_create(const struct solver *solver, const double *solver_values, struct scene *scene,
@@ -154,6 +170,7 @@ status run_create(const struct solver *solver, const double *solver_values, stru
   fill_view(run);
   set_params(solver, solver_values, run->state);
   run->needs = fields_needed(solver, asks);
+  TRY(check_memory(run));
   run->speed_limit = SPEED_MARGIN * reference_speed(&run->scene);
   TRY(store_open(&run->store, solver, run->needs, run->scene.n, run->scene.n_wall, run->state));
   TRY(upload_scene(run));
@@ -175,7 +192,9 @@ static void check_health(struct run *run)
 {
   double total, fastest;
   physics_health(run->view, &total, &fastest);
-  if (!isfinite(total))
+  run->not_finite = !isfinite(total);
+  if (run->diverged) return; /* the solver has said why */
+  if (run->not_finite)
     run_diverged(run, "a position or velocity is not finite");
   else if (run->speed_limit > 0 && fastest > run->speed_limit)
     run_diverged(run, "a particle moves at %.3g m/s, %d times what the energy allows", fastest,
@@ -186,7 +205,7 @@ static status finish_step(struct run *run, status result)
 {
   if (result == ERR_RUN && run->diverged) result = OK;
   run->step++;
-  if (result == OK && !run->diverged) check_health(run);
+  if (result == OK) check_health(run);
   return result;
 }
 

@@ -44,6 +44,7 @@ struct run {
   double step_residual;
 
   int diverged;
+  int not_finite;             /* the last step left a position or velocity that is none */
   char reason[256];
   double speed_limit;         /* [m/s]; 0: none */
 };

@@ -28,18 +28,20 @@ static const struct pairs *build_pairs(const struct snapshot *now)
   return &cache->list.pairs;
 }
 
-/* A host copy of a field, NULL if the run has none; entries [begin, n) as they are in the store. */
-static void *download(struct run *run, const char *name, int n)
+/* The first n entries of a field on the host, as they are in the store; NULL if the run has no such
+ * field, or n is 0; *lost is set if there is no memory. */
+static void *download(struct run *run, const char *name, int n, int *lost)
 {
   struct store_field *f = store_find(&run->store, name);
-  if (!f) return NULL;
+  if (!f || n == 0) return NULL;
   void *copy = malloc(f->row.bytes * (size_t)(n + 1) + 64);
   if (copy) memory_to_host(copy, f->data, f->row.bytes * (size_t)n);
+  *lost |= !copy;
   return copy;
 }
 
 /* Put the first n entries in order; frees what was there. */
-static void *reorder(void *from, const int *order, int n, int total, size_t bytes)
+static void *reorder(void *from, const int *order, int n, int total, size_t bytes, int *lost)
 {
   if (!from) return NULL;
   char *to = malloc(bytes * (size_t)(total + 1) + 64);
@@ -47,6 +49,7 @@ static void *reorder(void *from, const int *order, int n, int total, size_t byte
     permute(to, from, order, n, bytes);
     memcpy(to + bytes * (size_t)n, (char *)from + bytes * (size_t)n, bytes * (size_t)(total - n));
   }
+  *lost |= !to;
   free(from);
   return to;
 }
@@ -100,41 +103,38 @@ static status fit_grid(const struct snapshot *s, struct grid *grid)
   return grid_fit(grid, low, high, s->period, (real)s->support, s->n_all);
 }
 
+static status sort_all(struct snapshot *out, struct cache *cache, int *order)
+{
+  const int n = out->n;
+  int lost = 0;
+  TRY(fit_grid(out, &cache->grid));
+  TRY(cell_sort(&cache->fluid, &cache->grid, out->x, n, order));
+  out->x = reorder((void *)out->x, order, n, out->n_all, sizeof(vec), &lost);
+  out->v = reorder((void *)out->v, order, n, out->n_all, sizeof(vec), &lost);
+  out->id = reorder((void *)out->id, order, n, n, sizeof(int), &lost);
+  out->p = reorder((void *)out->p, order, n, n, sizeof(real), &lost);
+  out->rho = reorder((void *)out->rho, order, n, n, sizeof(real), &lost);
+  if (lost) return status_set(ERR_MEMORY, "no memory for a snapshot");
+  return sort_walls(out, cache, order);
+}
+
 status run_snapshot(struct run *run, struct snapshot *out)
 {
   memset(out, 0, sizeof *out);
   fill_facts(run, out);
-  const int n = out->n, all = out->n_all;
+  const int all = out->n_all, computed = run->step > 0 ? out->n : 0; /* nothing is at the start */
   struct cache *cache = calloc(1, sizeof *cache);
   int *order = malloc(sizeof(int) * (size_t)(all + 1));
+  int lost = !cache || !order;
   out->cache = cache;
-  out->x = download(run, "x", all);
-  out->v = download(run, "v", all);
-  out->id = download(run, "id", n);
-  out->p = download(run, "p", run->step > 0 ? n : 0);
-  out->rho = download(run, "rho", run->step > 0 ? n : 0);
-  status result = OK;
-  if (!cache || !order || !out->x || !out->v || !out->id) result = status_set(ERR_MEMORY, "no memory for a snapshot");
-  if (result == OK) result = fit_grid(out, &cache->grid);
-  if (result == OK) {
-    result = cell_sort(&cache->fluid, &cache->grid, out->x, n, order);
-  }
-  if (result == OK) {
-    out->x = reorder((void *)out->x, order, n, all, sizeof(vec));
-    out->v = reorder((void *)out->v, order, n, all, sizeof(vec));
-    out->id = reorder((void *)out->id, order, n, n, sizeof(int));
-    if (run->step > 0) {
-      out->p = reorder((void *)out->p, order, n, n, sizeof(real));
-      out->rho = reorder((void *)out->rho, order, n, n, sizeof(real));
-    }
-    result = sort_walls(out, cache, order);
-  }
+  out->x = download(run, "x", all, &lost);
+  out->v = download(run, "v", all, &lost);
+  out->id = download(run, "id", out->n, &lost);
+  out->p = download(run, "p", computed, &lost);
+  out->rho = download(run, "rho", computed, &lost);
+  const status result =
+    lost ? status_set(ERR_MEMORY, "no memory for a snapshot") : sort_all(out, cache, order);
   free(order);
-  if (run->step == 0) { /* nothing was computed yet */
-    free((void *)out->p);
-    free((void *)out->rho);
-    out->p = out->rho = NULL;
-  }
   if (result != OK) snapshot_free(out);
   return result;
 }

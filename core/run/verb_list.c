@@ -114,6 +114,22 @@ static void show_solver(const struct solver *s, int json)
                        params_json(s->params, s->num_params, 0, NULL), "fields", fields, "can", abilities_json(s->can)));
 }
 
+static json_t *dims_json(unsigned dims)
+{
+  json_t *array = json_array();
+  if (dims & CAN(2D)) json_array_append_new(array, json_integer(2));
+  if (dims & CAN(3D)) json_array_append_new(array, json_integer(3));
+  return array;
+}
+
+static json_t *measures_json(const unsigned *measures)
+{
+  json_t *array = json_array();
+  for (int k = NUM_GENERAL_METRICS; k < NUM_METRICS; k++)
+    if (measures[k / 32] >> (k % 32) & 1u) json_array_append_new(array, json_string(metric_names[k]));
+  return array;
+}
+
 static void show_scene(const struct benchmark *b, int json)
 {
   struct scene_params common;
@@ -125,8 +141,10 @@ static void show_scene(const struct benchmark *b, int json)
     json_t *own = params_json(b->params, b->num_params, 0, NULL);
     json_array_extend(parameters, own);
     json_decref(own);
-    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o}", "kind", "scene", "name", b->name, "about", b->about, "source",
-                         b->source, "parameters", parameters));
+    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "kind", "scene", "name", b->name,
+                         "about", b->about, "source", b->source, "parameters", parameters, "asks",
+                         abilities_json(b->asks), "dims", dims_json(b->dims), "metrics",
+                         measures_json(b->measures)));
     return;
   }
   printf("%s: %s\n  %s\n", b->name, b->about, b->source);

@@ -5,9 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "../base/memory.h"
 #include "../base/progress.h"
+#include "../io/out_path.h"
 #include "../io/result_file.h"
 #include "../io/result_json.h"
 #include "facts.h"
@@ -21,20 +23,32 @@ struct session {
   struct facts facts;
   struct result_file *file;
   struct progress bar;
-  long frames, next_frame;
+  long frames, next_frame, steps;
   double next_sample, t_end;
 };
+enum { MOST_STEPS = 1000000000 };
 
 static volatile sig_atomic_t stop_signal;
 static void on_signal(int number) { stop_signal = number; }
 
+static const char *stop_reason(void)
+{
+  return stop_signal == SIGINT ? "stopped by Ctrl-C"
+         : stop_signal == SIGHUP ? "stopped as its terminal was closed" : "stopped by SIGTERM";
+}
+
 static void catch_signals(void)
 {
-  struct sigaction action;
+  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  for (int k = 0; k < COUNT(numbers); k++) {
+    sigaction(numbers[k], NULL, &before);
+    if (numbers[k] == SIGHUP && before.sa_handler == SIG_IGN) continue; /* nohup */
+    sigaction(numbers[k], &action, NULL);
+  }
+  signal(SIGXFSZ, SIG_IGN); /* a limit on the size of files is met like a full disk */
 }
 
 /* order[label] = place in the snapshot, so that row k of every frame is particle k. */
@@ -83,15 +97,20 @@ static status write_walls(struct session *s, const struct snapshot *now)
   return result_file_add_walls(s->file, &walls);
 }
 
-/* Sample the metrics and write a frame, each when it is due. */
+static double frame_time(const struct session *s)
+{
+  return s->t_end * (double)s->next_frame / (double)s->frames;
+}
+
+/* Sample the metrics and write a frame, each when it is due. Of a state that is not finite there is
+ * neither: the last frame is one that can be drawn. */
 static status sample(struct session *s, int last)
 {
   struct run *run = s->run;
   const double eps = 1e-9 * run->dt;
   const int sample_due = last || run->time >= s->next_sample - eps;
-  const double frame_time = s->frames > 0 ? s->t_end * (double)s->next_frame / (double)s->frames : 0;
-  const int frame_due = s->file && (last || run->time >= frame_time - run->dt / 2);
-  if (!sample_due && !frame_due) return OK;
+  const int frame_due = s->file && (last || run->time >= frame_time(s) - run->dt / 2);
+  if (run->not_finite || (!sample_due && !frame_due)) return OK;
   struct snapshot now;
   TRY(run_snapshot(run, &now));
   status result = OK;
@@ -106,8 +125,7 @@ static status sample(struct session *s, int last)
     if (result == OK) result = write_frame(s, &now);
     facts_update(&s->facts, &s->plan, run, &s->record);
     if (result == OK) result = result_file_add_series(s->file, &s->facts.run);
-    while (s->frames > 0 && s->t_end > 0 && s->t_end * (double)s->next_frame / (double)s->frames <= run->time + run->dt / 2)
-      s->next_frame++;
+    while (s->next_frame <= s->frames && frame_time(s) <= run->time + run->dt / 2) s->next_frame++;
     clock_enter(before);
   }
   snapshot_free(&now);
@@ -138,19 +156,20 @@ static status drive(struct session *s, double time)
   return ready ? OK : status_set(ERR_MEMORY, "no memory for the prescribed motion");
 }
 
+/* A signal is looked at once per step, so that the last step always leaves a sample and a frame. */
 static status step_to_end(struct session *s)
 {
   struct run *run = s->run;
-  const long steps = (long)ceil(s->t_end / run->dt - 1e-9);
-  while (run->step < steps && !run->diverged && !stop_signal) {
+  int last = stop_signal || run->step == s->steps;
+  while (!last) {
     TRY(drive(s, run->time + run->dt));
     TRY(run_step(run));
     TRY(record_step(&s->record, run));
-    const int last = run->step == steps || run->diverged || stop_signal;
+    last = stop_signal || run->diverged || run->step == s->steps;
     TRY(sample(s, last));
     char note[64];
     snprintf(note, sizeof note, "t = %.4g s, %d iterations", run->time, run->step_iterations);
-    progress_show(&s->bar, (double)run->step / (double)steps, note);
+    progress_show(&s->bar, (double)run->step / (double)s->steps, note);
   }
   return OK;
 }
@@ -178,40 +197,43 @@ static void print_summary(const struct session *s)
          1e6 * f->timing.per_step / (double)(f->particles > 0 ? f->particles : 1));
 }
 
-static status finish(struct session *s, status result, double seconds)
+static enum run_status how_it_ended(const struct session *s, const char **reason)
 {
-  struct run *run = s->run;
-  enum run_status end = RUN_DONE;
-  const char *reason = NULL;
-  if (run->diverged) {
-    end = RUN_DIVERGED;
-    reason = run->reason;
-  } else if (stop_signal) {
-    end = RUN_INTERRUPTED;
-    reason = stop_signal == SIGINT ? "stopped by Ctrl-C" : "stopped by SIGTERM";
-  }
-  if (result != OK) return result;
+  const struct run *run = s->run;
+  *reason = run->diverged ? run->reason : NULL;
+  if (run->diverged) return RUN_DIVERGED;
+  if (run->step == s->steps) return RUN_DONE;
+  *reason = stop_reason();
+  return RUN_INTERRUPTED;
+}
+
+/* The files and the words at the end of a run that was carried out, whatever came of it. */
+static status finish(struct session *s, double seconds)
+{
+  const struct run *run = s->run;
+  const struct options *o = s->o;
+  const char *reason;
+  const enum run_status end = how_it_ended(s, &reason);
   facts_end(&s->facts, &s->plan, run, &s->record, end, reason, seconds);
   if (s->file) {
     struct result_file *file = s->file;
     s->file = NULL;
     TRY(result_file_finish(file, &s->facts.run));
   }
-  if (s->o->json) TRY(result_json_write(s->o->json, &s->facts.run));
-  if (!s->o->quiet && !(s->o->json && strcmp(s->o->json, "-") == 0)) print_summary(s);
-  if (s->o->explain) explain(run);
-  if (run->diverged)
-    return status_set(ERR_RUN, "the run diverged at t = %.6g s (step %ld): %s", run->time, run->step, run->reason);
-  if (stop_signal) return status_set(ERR_RUN, "the run was stopped at t = %.6g s (step %ld)", run->time, run->step);
-  return OK;
+  if (o->json) TRY(result_json_write(o->json, &s->facts.run));
+  if (!o->quiet && !(o->json && strcmp(o->json, "-") == 0)) print_summary(s);
+  if (o->explain) explain(run);
+  if (end == RUN_DONE) return OK;
+  return status_set(ERR_RUN, "the run %s at t = %.6g s (step %ld): %s",
+                    run->diverged ? "diverged" : "was stopped", run->time, run->step, reason);
 }
 
 static status dry_run(const struct session *s)
 {
   const struct run *run = s->run;
-  const double steps = s->plan.setting.benchmark && s->plan.setting.benchmark->projection ? 1 : ceil(s->t_end / run->dt - 1e-9);
-  printf("%s with %s (%s): %d fluid and %d wall particles, %.0f steps of %g s\n", s->o->name, run->solver->name,
-         SPHBENCH_VARIANT, run->view->p.n, run->view->p.n_all - run->view->p.n, steps, run->dt);
+  printf("%s with %s (%s): %d fluid and %d wall particles, %ld steps of %g s\n", s->o->name,
+         run->solver->name, SPHBENCH_VARIANT, run->view->p.n, run->view->p.n_all - run->view->p.n,
+         s->steps, run->dt);
   for (int k = 0; k < s->plan.num_parameters; k++) {
     const struct fact *f = &s->plan.parameters[k];
     if (f->word) printf("  %-18s %-12s %s\n", f->name, f->word, f->about);
@@ -221,24 +243,64 @@ static status dry_run(const struct session *s)
   return OK;
 }
 
+static status count_steps(struct session *s)
+{
+  const struct setting *set = &s->plan.setting;
+  const double steps = ceil(set->scene.common.t_end / set->scene.common.dt - 1e-9);
+  s->t_end = set->scene.common.t_end;
+  s->steps = set->benchmark && set->benchmark->projection ? 1 : (long)fmin(steps, MOST_STEPS + 1.0);
+  if (s->steps <= MOST_STEPS) return OK;
+  return user_error("--t-end, --dt: %g s in steps of %g s are %.3g steps, allowed are at most %d",
+                    s->t_end, set->scene.common.dt, steps, MOST_STEPS);
+}
+
+static int same_file(const char *a, const char *b)
+{
+  struct stat one, other;
+  if (!a || !b || stat(a, &one) || stat(b, &other)) return a && b && strcmp(a, b) == 0;
+  return one.st_dev == other.st_dev && one.st_ino == other.st_ino && S_ISREG(one.st_mode);
+}
+
+/* What would only be found after the run: files in each other's way, a --json that cannot be. */
+static status check_outputs(const struct options *o, int from_file)
+{
+  struct out_path out;
+  if (same_file(o->output, o->json))
+    return user_error("-o and --json: both are '%s', allowed are two files", o->json);
+  if (from_file && (same_file(o->output, o->name) || same_file(o->json, o->name)))
+    return user_error("'%s' is the scene file, allowed is another file to write to", o->name);
+  if (!o->json) return OK;
+  if (strcmp(o->json, "-") == 0)
+    return o->explain ? user_error("--explain, --json -: both write to standard output") : OK;
+  TRY(out_path_begin(&out, o->json, 1));
+  out_path_discard(&out);
+  return OK;
+}
+
+static status start(struct session *s, int threads)
+{
+  facts_start(&s->facts, s->o, &s->plan, s->run, threads);
+  catch_signals();
+  return s->o->output ? result_file_open(&s->file, s->o->output, &s->facts.run) : OK;
+}
+
 static status carry_out(struct session *s, int threads)
 {
   struct setting *set = &s->plan.setting;
-  const double dt = set->scene.common.dt;
-  s->t_end = set->scene.common.t_end;
+  TRY(count_steps(s));
+  if (!s->o->dry_run) TRY(check_outputs(s->o, !set->benchmark));
   TRY(run_create(s->plan.solver, s->plan.solver_values, &set->scene, set->asks, &s->run));
+  plan_resolve(&s->plan, s->run);
   if (s->o->dry_run) return dry_run(s);
-  facts_start(&s->facts, s->o, &s->plan, s->run, threads);
-  if (s->o->output) TRY(result_file_open(&s->file, s->o->output, &s->facts.run));
-  catch_signals();
+  TRY(start(s, threads));
   progress_begin(&s->bar, s->o->name, s->o->quiet);
   clock_reset();
   const double begun = clock_now();
   status result = sample(s, 0);
-  if (result == OK && dt > 0)
+  if (result == OK)
     result = set->benchmark && set->benchmark->projection ? project_once(s) : step_to_end(s);
   progress_end(&s->bar);
-  return finish(s, result, clock_now() - begun);
+  return result == OK ? finish(s, clock_now() - begun) : result;
 }
 
 status verb_run(const struct options *o)

@@ -168,6 +168,20 @@ static int wanted(const char *list, const char *name)
   return 0;
 }
 
+/* Every word of the list must be known before anything is timed. */
+static status check_solvers(const char *list)
+{
+  while (list) {
+    const struct solver *unused;
+    char word[64];
+    const size_t length = strcspn(list, ",");
+    snprintf(word, sizeof word, "%.*s", (int)length, list);
+    TRY(solver_require(word, &unused));
+    list = list[length] ? list + length + 1 : NULL;
+  }
+  return OK;
+}
+
 static void print_case(const struct speed_case *c)
 {
   printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles, c->neighbours_mean,
@@ -180,6 +194,7 @@ status verb_speed(const struct options *o)
   long threads, particles;
   TRY(option_whole("--threads", o->threads, 1, 1024, 1, &threads));
   TRY(option_whole("--particles", o->particles, 100, 100000000, DEFAULT_PARTICLES, &particles));
+  TRY(check_solvers(o->solvers));
   omp_set_num_threads((int)threads);
   struct provenance p;
   provenance_fill(&p, (int)threads, o->argc, (const char *const *)o->argv);
@@ -198,6 +213,5 @@ status verb_speed(const struct options *o)
     TRY(time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]));
     print_case(&cases[n++]);
   }
-  if (n == 0) return user_error("--solvers: none of '%s' is known", o->solvers);
   return o->json ? write_json(o->json, &p, &top, cases, n) : OK;
 }

@@ -1,12 +1,13 @@
-width = 760; height = 520
+width = 860; height = 480
 load shared.'style.gp'
 load 'contents.gp'
 set xlabel label_x
 set ylabel label_y
-set key top left Left reverse
+set key outside right top vertical Left reverse
 set logscale xy
-set xrange [0.002:0.0125]
-set xtics (0.0025, 0.00375, 0.005, 0.0075, 0.01)
+set xrange [0.0022:0.0115]
+set yrange [0.02:2]
+set xtics (0.0025, '' 0.00375, 0.005, '' 0.0075, 0.01)
 set mytics 10
 plot for [k = 1:n] file[k] using 1:2 with points lt colour[k] title title[k], \
   for [k = 1:n] (fit[k] ne '' ? fit[k] : '/dev/null') using 1:2 with lines lt colour[k] \

@@ -2,5 +2,5 @@
 cell_width = 190.0
 cell_height = 190.0
 spacing = 0.005
-array step[5] = [0.1, 0.2, 0.2, 0.5, 0.5]
+array step[5] = [0.1, 0.2, 0.3, 0.5, 0.5]
 load shared.'frames.gp'

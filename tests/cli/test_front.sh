@@ -36,7 +36,8 @@ cat >"$dir/bin/variants/sphbench-openmp-2d-f64" <<'STUB'
 #!/usr/bin/env bash
 calls=$(dirname "$0")/../../calls
 case $1 in
-  list) echo '[{"name": "good", "about": "runs"}, {"name": "bad", "about": "ends badly"}]' && exit ;;
+  list)
+    echo '[{"name": "good", "about": "runs"}, {"name": "bad", "about": "ends badly"}]' && exit ;;
   show) echo "showing $2" && exit ;;
 esac
 echo "$*" >>"$calls"
@@ -57,8 +58,8 @@ result() {
  "iterations": {"mean": 2, "max": 3, "total": 4}, "timing": {"per_step": 0.001},
  "metrics": {"error": {"value": $3, "unit": "1"}, "none": {"value": null, "unit": "m"}},
  "series": {"time": [0, 1, 2], "error": [1, null, 3]},
- "provenance": {"commit": "abc", "compiler": "cc <1>", "cpu": "a & b", "date": "2024-01-01T00:00:00Z",
- "libraries": {"hdf5": "1"}, "argv": []}}
+ "provenance": {"commit": "abc", "compiler": "cc <1>", "cpu": "a & b", "argv": [],
+  "date": "2024-01-01T00:00:00Z", "libraries": {"hdf5": "1"}}}
 JSON
 }
 [[ $solver == bad ]] && solver=${SOLVER_BAD:-bad}
@@ -67,7 +68,12 @@ case $solver in
   refuses) echo "sphbench: the solver cannot do <walls>" >&2 && exit 2 ;;
   diverges) result diverged "a position is not finite" 1 && exit 3 ;;
   crashes) kill -SEGV $$ ;;
-  slow) trap 'result interrupted "stopped" 1; exit 3' TERM INT && sleep 20 & wait && exit 1 ;;
+  slow)
+    trap 'kill $!; result interrupted stopped 1; exit 3' TERM INT
+    sleep 20 &
+    wait
+    exit 1
+    ;;
 esac
 STUB
 chmod +x "$dir/bin/variants/sphbench-openmp-2d-f64"
@@ -142,7 +148,7 @@ $body"
 mine 2 "recipe.yaml:4:8: order is 'first'"
 recipe "$head"
 mine 2 "recipe.yaml:1:1: the document has no key 'extract'"
-recipe '"
+recipe ''
 mine 2 "recipe.yaml is empty"
 recipe "name: [mine"
 mine 2 "recipe.yaml"
@@ -184,7 +190,8 @@ mine 0 '4 runs done, 0 were there already'
 grep -q "order 2.00" "$dir/results/figures/mine/contents.gp" || fail 'the order is not 2'
 mine 0 '0 runs done, 4 were there already'
 (($(runs) == 4)) || fail 'a second figure runs something'
-id=$(basename "$(ls "$dir"/results/runs/*.json | head -n 1)" .json)
+files=("$dir"/results/runs/*.json)
+id=$(basename "${files[0]}" .json)
 rm "$dir/results/runs/$id.json"
 mine 0 '1 runs done, 3 were there already'
 sed -i "/$id/d" "$dir/results/journal.jsonl"
@@ -232,6 +239,21 @@ expect 2 'another sphbench is running' figure "$dir/mine" --results "$dir/result
 kill -TERM $pid
 wait $pid
 (($? == 3)) || fail 'stopped: exit code is not 3'
+# Killed: what was finished stays, and the children do not live on.
+: >"$dir/calls"
+"$dir/bin/sphbench" figure "$dir/mine" --results "$dir/results" --jobs 4 2>"$dir/err" >"$dir/out" &
+pid=$!
+for _ in {1..100}; do
+  (($(runs) == 2)) && sleep 0.3 && break
+  sleep 0.1
+done
+kill -KILL $pid
+wait $pid 2>/dev/null
+for _ in {1..50}; do
+  pgrep -f "$dir/bin/variants/" >/dev/null || break
+  sleep 0.1
+done
+pgrep -f "$dir/bin/variants/" >/dev/null && fail 'killed: a child lives on'
 SOLVER_BAD=
 mine 0 '2 runs done, 2 were there already'
 unset SOLVER_BAD

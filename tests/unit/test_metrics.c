@@ -382,26 +382,28 @@ static void test_volume_of_spray(void **state)
   assert_true(isnan(occupied_volume(&far)));
 }
 
-/* A block across a periodic border has the volume that it has in the middle of the domain. */
+/* A block at and across a periodic border has the volume that it has in the middle. */
 static void test_volume_across_a_period(void **state)
 {
-  struct scene s = new_scene(0.1);
-  double volume[2];
+  static const double shift[] = {0, 1.45, 2}; /* multiples of the nodes' distance */
+  double volume[3];
   (void)state;
-  must(scene_fill_box(&s, all_axes(-0.5), all_axes(0.5), zero(), NULL));
-  vec period = zero();
-  period.c[0] = 4;
-  for (int k = 0; k < 2; k++) {
-    const struct cloud c = {s.x, s.n, 0.1, all_axes(-2), all_axes(2), period};
-    volume[k] = occupied_volume(&c);
+  for (int k = 0; k < 3; k++) {
+    struct scene s = new_scene(0.1);
+    vec period = zero();
+    period.c[0] = 4;
+    must(scene_fill_box(&s, all_axes(-0.5), all_axes(0.5), zero(), NULL));
     for (int i = 0; i < s.n; i++) {
-      const double x = (double)s.x[i].c[0] + 2;
+      const double x = (double)s.x[i].c[0] + shift[k];
       s.x[i].c[0] = (real)(x >= 2 ? x - 4 : x);
     }
+    const struct cloud c = {s.x, s.n, 0.1, all_axes(-2), all_axes(2), period};
+    volume[k] = occupied_volume(&c);
+    scene_free(&s);
   }
   near_to(volume[0], 1, DIM == 2 ? 0.03 : 0.06, DIM == 2 ? 0.03 : 0.06);
-  near_to(volume[1], volume[0], 1e-3, 1e-3);
-  scene_free(&s);
+  near_to(volume[1], volume[0], 1e-2, 1e-2);
+  near_to(volume[2], volume[0], 1e-3, 1e-3);
 }
 
 int main(void)

@@ -223,6 +223,9 @@ static void test_unknown_keys(void **state)
   bad("dim: 2\n\"fl\\0uid\": 3\n", ":2:1:", "unknown key");
 }
 
+#define ONE_DISC "dim: 2\nfluid:\n  - disc: {centre: [0, 0], radius: 1}\n"
+#define ONE_BALL "dim: 3\nfluid:\n  - ball: {centre: [0, 0, 0], radius: 1}\n"
+
 static void test_wrong_kinds(void **state)
 {
   (void)state;
@@ -255,14 +258,9 @@ static void test_wrong_kinds(void **state)
       ":3:41:", "corners[3] has 3 entries, allowed are 2");
   bad("dim: 2\nname: [a]\n", ":2:7:", "name is a list, allowed is text");
   bad("dim: 2\nname: ''\n", ":2:7:", "name has 0 letters");
-  bad(
-    "dim: 2\nfluid:\n  - disc: {centre: [0, 0], radius: 1}\nwalls:\n  - box: {low: [0, 0], high: [1, 1], "
-    "open_top: maybe}\n",
-    ":5:48:", "open_top is 'maybe', allowed is true or false");
+  bad(ONE_DISC "walls:\n  - box: {low: [0, 0], high: [1, 1], open_top: maybe}\n",
+      ":5:48:", "open_top is 'maybe', allowed is true or false");
 }
-
-#define ONE_DISC "dim: 2\nfluid:\n  - disc: {centre: [0, 0], radius: 1}\n"
-#define ONE_BALL "dim: 3\nfluid:\n  - ball: {centre: [0, 0, 0], radius: 1}\n"
 
 static void test_wrong_values(void **state)
 {
