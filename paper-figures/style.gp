@@ -10,7 +10,7 @@
 
 # PNG at twice the size in pixels, for print and dense screens; the same layout.
 if (kind eq 'svg') {
-  set terminal svg size width,height dynamic font 'DejaVu Sans,14' linewidth 1 background '#ffffff'
+  set terminal svg size width,height font 'DejaVu Sans,14' linewidth 1 background '#ffffff'
 } else {
   set terminal pngcairo size 2*width,2*height font 'DejaVu Sans,14' fontscale 2 linewidth 2 \
     pointscale 2 background '#ffffff'

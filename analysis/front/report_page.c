@@ -17,7 +17,7 @@ static const char style[] =
   "figure{margin:0 0 2.5rem}figcaption{max-width:50rem;margin-top:.5rem}\n"
   /* pictures are drawn on paper, in the dark as well: their colours are those of the legend */
   ".paper{background:#fff;border:1px solid var(--line);border-radius:6px;padding:.5rem;"
-  "text-align:center}.paper svg{max-width:min(100%,58rem);height:auto}\n"
+  "text-align:center}.paper svg{max-width:100%;height:auto}\n"
   ".paper img{max-width:100%;height:auto}\n"
   ".paper svg text{font-family:system-ui,-apple-system,'Segoe UI','DejaVu Sans',sans-serif}\n"
   ".origin{color:var(--soft);font-size:.875rem}.origin span{margin-left:1rem}\n"

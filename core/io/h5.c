@@ -92,9 +92,8 @@ static hid_t create(struct h5 *h, hid_t parent, struct h5_label label, hid_t typ
   return data;
 }
 
-static void chunk_by(hid_t properties, int rank, const hsize_t *chunk)
+static void compress(hid_t properties)
 {
-  H5Pset_chunk(properties, rank, chunk);
   H5Pset_shuffle(properties);
   H5Pset_deflate(properties, DEFLATE_LEVEL);
 }
@@ -107,7 +106,8 @@ void h5_put(struct h5 *h, hid_t parent, struct h5_label label, struct h5_array a
   const hid_t properties = without_times(H5P_DATASET_CREATE);
   if (array.rank && array.dims[0] >= WORTH_COMPRESSING) {
     const hsize_t rows = array.dims[0] < MOST_CHUNK ? array.dims[0] : MOST_CHUNK;
-    chunk_by(properties, array.rank, (const hsize_t[]){rows, array.dims[1]});
+    H5Pset_chunk(properties, array.rank, (const hsize_t[]){rows, array.dims[1]});
+    compress(properties);
   }
   const hid_t data = create(h, parent, label, array.type, space, properties);
   if (data >= 0) {
@@ -142,7 +142,7 @@ void h5_put_texts(struct h5 *h, hid_t parent, struct h5_label label, int count,
 }
 
 hid_t h5_column(struct h5 *h, hid_t parent, struct h5_label label, hid_t type, int width,
-                long chunk)
+                long chunk, int whole)
 {
   if (h->error) return -1;
   const int rank = width ? 2 : 1;
@@ -150,7 +150,8 @@ hid_t h5_column(struct h5 *h, hid_t parent, struct h5_label label, hid_t type, i
   const hsize_t together[2] = {(hsize_t)chunk, (hsize_t)width};
   const hid_t space = H5Screate_simple(rank, empty, most);
   const hid_t properties = without_times(H5P_DATASET_CREATE);
-  chunk_by(properties, rank, together);
+  H5Pset_chunk(properties, rank, together);
+  if (whole) compress(properties);
   const hid_t data = create(h, parent, label, type, space, properties);
   H5Pclose(properties);
   H5Sclose(space);

@@ -49,9 +49,10 @@ void h5_put_texts(struct h5 *h, hid_t parent, struct h5_label label, int count,
                   const char *const *texts);
 
 /* A dataset [0][width] (width 0: [0]) that grows; `chunk` rows are stored together. To be closed by
- * H5Dclose. */
+ * H5Dclose. Chunks are compressed only where each append fills `whole` ones: a chunk that is written
+ * again must keep its size, or a kill in between leaves it unreadable. */
 hid_t h5_column(struct h5 *h, hid_t parent, struct h5_label label, hid_t type, int width,
-                long chunk);
+                long chunk, int whole);
 /* Write rows first .. first+rows-1 of a column, growing it to end there. */
 void h5_append(struct h5 *h, hid_t column, long long first, long long rows, hid_t memory,
                const void *data);

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-enum { SERIES_CHUNK = 512 /* rows */ };
+enum { SERIES_CHUNK = 128 /* rows */ };
 
 static const char *const status_words[NUM_RUN_STATUS] = {
 #define S(name, json, file) file,
@@ -93,7 +93,7 @@ static void put_table(struct h5 *h, const char *path, const struct fact_table *t
     const struct h5_label label = {column->name, column->unit, column->about};
     const hid_t data = H5Lexists(group, column->name, H5P_DEFAULT) > 0
                          ? h5_check(h, H5Dopen2(group, column->name, H5P_DEFAULT))
-                         : h5_column(h, group, label, H5T_IEEE_F64LE, 0, SERIES_CHUNK);
+                         : h5_column(h, group, label, H5T_IEEE_F64LE, 0, SERIES_CHUNK, 0);
     const hid_t space = H5Dget_space(data);
     const long long there = H5Sget_simple_extent_npoints(space);
     H5Sclose(space);

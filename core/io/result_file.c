@@ -64,7 +64,7 @@ static const char *const vtk_groups[] = {"PointData",
                                          "Steps/PointDataOffsets",
                                          "Steps/FieldDataOffsets"};
 
-enum { STEP_CHUNK = 64, LEAST_CHUNK = 256, MOST_CHUNK = 16384 /* rows */ };
+enum { STEP_CHUNK = 64, LEAST_CHUNK = 256, MOST_CHUNK = 1 << 24 /* rows */ };
 #define COUNT_OF(a) (sizeof(a) / sizeof *(a))
 
 struct result_file {
@@ -255,43 +255,41 @@ static void create_steps(struct result_file *f)
   for (int c = 0; c < NUM_STEP_COLUMNS; c++)
     f->steps[c] =
       h5_column(h, f->vtk, (struct h5_label){step_columns[c].path, "1", step_columns[c].about},
-                H5T_STD_I64LE, step_columns[c].width, STEP_CHUNK);
+                H5T_STD_I64LE, step_columns[c].width, STEP_CHUNK, 0);
   h5_put(h, f->vtk, (struct h5_label){"Lines/Connectivity", "1", "empty: there are no such cells"},
          (struct h5_array){.type = H5T_STD_I64LE, .memory = H5T_NATIVE_LLONG, .rank = 1});
   for (size_t i = 0; i < COUNT_OF(step_links); i++)
     h5_link(h, step_links[i].target, f->vtk, step_links[i].name);
   f->times = h5_column(h, f->vtk, (struct h5_label){"Steps/Values", "s", "time of each step"},
-                       H5T_IEEE_F64LE, 0, STEP_CHUNK);
+                       H5T_IEEE_F64LE, 0, STEP_CHUNK, 0);
 }
 
-/* Chunks that frames of this size fill as a whole, so that appending one does not rewrite
- * another's. */
+/* A chunk per frame of this size, so that appending one does not rewrite another's. */
 static long rows_per_chunk(long n)
 {
-  const long parts = (n + MOST_CHUNK - 1) / MOST_CHUNK;
-  const long rows = parts ? (n + parts - 1) / parts : 0;
-  return rows < LEAST_CHUNK ? LEAST_CHUNK : rows;
+  return n < LEAST_CHUNK ? LEAST_CHUNK : n < MOST_CHUNK ? n : MOST_CHUNK;
 }
 
 static void create_arrays(struct result_file *f, const struct result_set *fluid)
 {
   struct h5 *h = &f->h5;
   const long chunk = rows_per_chunk(fluid->n);
+  const int whole = chunk == fluid->n;
   for (int a = 0; a < f->num_arrays; a++) {
     const struct result_array *array = &fluid->arrays[a];
     char path[256], offsets[256];
     snprintf(path, sizeof path, a ? "PointData/%s" : "Points", array->name);
     f->arrays[a] = h5_column(h, f->vtk, (struct h5_label){path, array->unit, array->about},
-                             type_in_file(array->type), width_in_file(array), chunk);
+                             type_in_file(array->type), width_in_file(array), chunk, whole);
     snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", array->name);
     if (a) h5_link(h, "/VTKHDF/Steps/PointOffsets", f->vtk, offsets);
   }
   f->connectivity =
     h5_column(h, f->vtk, (struct h5_label){"Vertices/Connectivity", "1", "0, 1, 2, ..."},
-              H5T_STD_I64LE, 0, chunk);
+              H5T_STD_I64LE, 0, chunk, whole);
   f->offsets =
     h5_column(h, f->vtk, (struct h5_label){"Vertices/Offsets", "1", "0 .. n of each step in turn"},
-              H5T_STD_I64LE, 0, chunk + 1);
+              H5T_STD_I64LE, 0, chunk + 1, whole);
 }
 
 static void create_numbers(struct result_file *f, const struct fact *numbers)
@@ -301,7 +299,7 @@ static void create_numbers(struct result_file *f, const struct fact *numbers)
     snprintf(path, sizeof path, "FieldData/%s", numbers[i].name);
     f->numbers[i] =
       h5_column(&f->h5, f->vtk, (struct h5_label){path, numbers[i].unit, numbers[i].about},
-                H5T_IEEE_F64LE, 0, STEP_CHUNK);
+                H5T_IEEE_F64LE, 0, STEP_CHUNK, 0);
     snprintf(offsets, sizeof offsets, "Steps/FieldDataOffsets/%s", numbers[i].name);
     h5_link(&f->h5, "/VTKHDF/Steps/PartOffsets", f->vtk, offsets);
   }

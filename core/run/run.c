@@ -181,7 +181,6 @@ status run_create(const struct solver *solver, const double *solver_values, stru
 static void begin_step(struct run *run)
 {
   run->step_iterations = 0;
-  run->density_is_current = 0;
   run->step_residual = 0;
   run->view->time = (real)run->time;
   run->view->dt = (real)run->dt;

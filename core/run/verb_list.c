@@ -99,19 +99,28 @@ static void show_solver_text(const struct solver *s)
   }
 }
 
+static json_t *fields_json(const struct field *fields, int n)
+{
+  static const char *const where[NUM_WHERE] = {"fluid", "fluid and walls", "walls", "virtual"};
+  json_t *array = json_array();
+  for (int k = 0; k < n; k++)
+    json_array_append_new(array, json_pack("{s:s, s:s, s:s, s:s}", "name", fields[k].name, "unit",
+                                           fields[k].unit, "meaning", fields[k].meaning, "where",
+                                           where[fields[k].where]));
+  return array;
+}
+
 static void show_solver(const struct solver *s, int json)
 {
   if (!json) {
     show_solver_text(s);
     return;
   }
-  json_t *fields = json_array();
-  for (int k = 0; k < s->num_fields; k++)
-    json_array_append_new(fields, json_pack("{s:s, s:s, s:s}", "name", s->fields[k].name, "unit", s->fields[k].unit,
-                                            "meaning", s->fields[k].meaning));
-  print_json(json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "kind", "solver", "name", s->name, "about",
-                       s->about, "paper", s->paper, "doi", s->doi, "differences", s->differences, "parameters",
-                       params_json(s->params, s->num_params, 0, NULL), "fields", fields, "can", abilities_json(s->can)));
+  print_json(json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "kind", "solver", "name",
+                       s->name, "about", s->about, "paper", s->paper, "doi", s->doi, "differences",
+                       s->differences, "parameters",
+                       params_json(s->params, s->num_params, 0, NULL), "fields",
+                       fields_json(s->fields, s->num_fields), "can", abilities_json(s->can)));
 }
 
 static json_t *dims_json(unsigned dims)

@@ -69,7 +69,8 @@ case $solver in
   diverges) result diverged "a position is not finite" 1 && exit 3 ;;
   crashes) kill -SEGV $$ ;;
   slow)
-    trap 'kill $!; result interrupted stopped 1; exit 3' TERM INT
+    # one tells that it was stopped, the other just ends
+    trap 'kill $!; [[ $spacing == 1 ]] || exit 1; result interrupted stopped 1; exit 3' TERM INT
     sleep 20 &
     wait
     exit 1
