@@ -23,11 +23,15 @@
   "Algorithm 1 starts its last line from v*, not from v^n\n"                                               \
   "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: removed, "   \
   "with a Neumann condition; a diagonal stays at least 0.05 alpha_0\n"                                     \
-  "S.B: the density term is evaluated at the real particles; at the shifted ones it hides compression\n"   \
+  "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones compression "     \
+  "hides\n"                                                                                                \
+  "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the kernel sum "  \
+  "of a perfect lattice ripples about rho0, which alone raises a spurious pressure\n"                      \
   "S.C: nearest node and a stencil of 13 (2-D) or 33 (3-D) nodes; keys of 64 bits"
 
 enum { VOLUME_PRINTED, VOLUME_SATURATED };
 enum { GRADIENT_PRINTED, GRADIENT_ADJOINT };
+enum { DENSITY_VIRTUAL, DENSITY_REAL };
 enum { OFFSET_FIXED, OFFSET_RANDOM };
 enum { SHIFTS = 5 };                          /* PBF iterations of S.B */
 enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
@@ -43,10 +47,11 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
   P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                                  \
   P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
 
-#define PARAMS_SC(P)                                                                                       \
-  PARAMS(P)                                                                                                \
-  P(virtual_spacing, 1, 0.5, 4, "dx", "spacing of the virtual particles")                                  \
-  P(offset, OFFSET_FIXED, 0, 1, "fixed|random", "origin of the grid: fixed, or drawn anew in every step")
+#define PARAMS_SC(P)                                                                               \
+  PARAMS(P)                                                                                        \
+  P(density, DENSITY_REAL, 0, 1, "virtual|real", "where the density of Eq. (13) is taken")         \
+  P(virtual_spacing, 1, 0.5, 4, "dx", "spacing of the virtual particles")                          \
+  P(offset, OFFSET_FIXED, 0, 1, "fixed|random", "origin of the grid: fixed, or anew in every step")
 
 #define FIELDS(F)                                                                                          \
   F(real, VI, VIRTUAL, STEP, "m^d", "volume of a virtual particle, Eq. (8)")                               \
@@ -63,7 +68,7 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
 #define FIELDS_SB(F)                                                                                       \
   FIELDS(F)                                                                                                \
   F(vec, X, VIRTUAL, KEPT, "m", "position of a virtual particle")                                          \
-  F(real, excess, VIRTUAL, KEPT, "1", "max(rho - rho0, 0) / rho0 at the real particle")                    \
+  F(real, excess, VIRTUAL, KEPT, "1", "max(rho - rho0, 0) / rho0 at the real particle")             \
   F(real, lambda, ALL, STEP, "m^2", "multiplier of the shifting, Macklin & Mueller Eq. (11)")              \
   F(vec, shift, ALL, STEP, "m", "displacement of a virtual particle in one shifting iteration")
 
@@ -93,16 +98,19 @@ STAGE lanes volume_j(const state *s, struct packet Ij) { return or_else(of(s->p.
 /* Eq. (8)   V_I = sum_j V_j^2 W_Ij,  or saturated  V_I = V_0 min(1, c_I / 0.85),  c_I = sum_j V_j W_Ij
  * Eq. (12)  vbar_I = sum_fluid V_j v_j W_Ij / sum_fluid V_j W_Ij
  * Eq. (11)  D_I = -1/dt sum_j V_j (v_j - vbar_I) . grad_I W_Ij
- * Eq. (13)  D_I += kappa max(rho_I - rho0, 0) / (rho0 dt^2) */
+ * Eq. (13)  D_I += kappa max(rho_I - rho0, 0) / (rho0 dt^2), or with the mean over fluid in place of rho_I,
+ *           sum_fluid V_j (rho_j/rho0 - 1) W_Ij = sum_fluid (V_0 - V_j) W_Ij */
 STAGE void source(const state *s, int I)
 {
   lanes c = NO_LANES, c_fluid = NO_LANES, V2 = NO_LANES, number = NO_LANES, div = NO_LANES;
+  lanes crowd = NO_LANES;
   vecs momentum = NO_VECS, gradient = NO_VECS;
   for_pairs(&s->at_virtual, I, Ij) {
     const lanes w = W(&s->at_virtual, Ij), V = volume_j(s, Ij), fluid_w = of(s->p.V, Ij) * w;
     c += V * w;
     V2 += V * V * w;
     number += w;
+    crowd += positive(of(s->p.V, Ij), s->solid_volume - of(s->p.V, Ij)) * w;
     c_fluid += fluid_w;
     momentum = add(momentum, scale(fluid_w, of(s->p.v, Ij)));
   }
@@ -114,7 +122,9 @@ STAGE void source(const state *s, int I)
     div += dot(difference(vbar, of(s->p.v, Ij)), Vg);
     gradient = add(gradient, Vg);
   }
-  const real dense = s->excess ? s->excess[I] : larger(s->mass * sum(number) / s->rho0 - 1, 0);
+  const real at_nodes = larger(s->mass * sum(number) / s->rho0 - 1, 0);
+  const real nearby = is_fluid ? larger(sum(crowd) / cf, 0) : 0;
+  const real dense = s->excess ? s->excess[I] : s->density == DENSITY_REAL ? nearby : at_nodes;
   const real scaled = s->unit_volume / s->solid_volume;
   s->VI[I] = s->volume == VOLUME_PRINTED ? scaled * sum(V2) : s->unit_volume * smaller(1, cI / SATURATION);
   s->fluid[I] = is_fluid;
@@ -233,15 +243,15 @@ STAGE void copy(const state *s, int I)
 /* Macklin & Mueller Eq. (11)  lambda_I = -C_I / (sum_k |grad_k C_I|^2 + eps),  C_I = max(rho_I / rho0 - 1, 0) */
 STAGE void multiplier(const state *s, int I)
 {
-  lanes rho = NO_LANES, g2 = NO_LANES;
+  lanes number = NO_LANES, g2 = NO_LANES;
   vecs g = NO_VECS;
   for_pairs(&s->at_real, I, IJ) {
     const vecs dC = scale(s->solid_volume + NO_LANES, gradW(&s->at_real, IJ));
-    rho += W(&s->at_real, IJ);
+    number += W(&s->at_real, IJ);
     g = add(g, dC);
     g2 += dot(dC, dC);
   }
-  const real C = larger(s->mass * sum(rho) / s->rho0 - 1, 0);
+  const real C = larger(s->solid_volume * sum(number) - 1, 0);
   const vec own = sum(g);
   s->lambda[I] = -C / (inner(own, own) + sum(g2) + (real)1e-6 / sq(s->dx));
 }
@@ -249,8 +259,10 @@ STAGE void multiplier(const state *s, int I)
 STAGE void displacement(const state *s, int I)
 {
   vecs dX = NO_VECS;
-  for_pairs(&s->at_real, I, IJ)
-    dX = add(dX, scale((s->lambda[I] + of(s->lambda, IJ)) * s->solid_volume, gradW(&s->at_real, IJ)));
+  for_pairs(&s->at_real, I, IJ) {
+    const lanes both = s->lambda[I] + of(s->lambda, IJ);
+    dX = add(dX, scale(both * s->solid_volume, gradW(&s->at_real, IJ)));
+  }
   s->shift[I] = sum(dX);
 }
 STAGE void displace(const state *s, int I) { s->X[I] = plus(s->X[I], s->shift[I]); }

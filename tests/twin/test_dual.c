@@ -5,14 +5,14 @@ enum { SA, SB, SC };
 enum { MOST_VIRTUAL = 3000 };
 
 struct choices {
-  int strategy, saturated, adjoint, iterations; /* iterations of CG; 0: solve by elimination */
+  int strategy, saturated, adjoint, real_density, iterations; /* iterations of CG; 0: solve by elimination */
   double kappa;
 };
 
 /* Virtual particles and the linear system on them. */
 static struct {
   int n;
-  double X[MOST_VIRTUAL][DIM], V[MOST_VIRTUAL], D[MOST_VIRTUAL], p[MOST_VIRTUAL], excess[MOST_VIRTUAL];
+  double X[MOST_VIRTUAL][DIM], V[MOST_VIRTUAL], D[MOST_VIRTUAL], p[MOST_VIRTUAL];
   double lift[MOST_VIRTUAL][DIM];
   int fluid[MOST_VIRTUAL];
 } s;
@@ -128,6 +128,12 @@ static void source(const struct cloud *c, const struct choices *o, int I)
   }
   double dense = fmax(rho / c->rho0 - 1, 0);
   if (o->strategy == SB) dense = I < c->n ? fmax(c->rho[I] / c->rho0 - 1, 0) : 0;
+  if (o->strategy == SC && o->real_density) {
+    dense = 0;
+    for (int j = 0; j < c->n && s.fluid[I]; j++)
+      dense += volume(c, j) * (c->rho[j] / c->rho0 - 1) * W_at(c, between(s.X[I], c->x[j])) / cf;
+    dense = fmax(dense, 0);
+  }
   s.V[I] = o->saturated ? c->mass / c->rho0 * fmin(1, cI / 0.85) : V2;
   s.D[I] = s.fluid[I] ? -div / c->dt + o->kappa * dense / (c->dt * c->dt) : 0;
   for (int d = 0; d < DIM; d++) s.lift[I][d] = s.fluid[I] ? grad[d] / cf : 0;
@@ -265,8 +271,9 @@ static void compare(const struct choices *o, int walls, unsigned long long seed)
   cloud_make(&a, DIM == 2 ? 11 : 6, walls, KERNEL_CUBIC, seed);
   a.xsph = (double)(real)0.05;
   b = a;
-  const struct setting settings[] = {{"volume", o->saturated}, {"gradient", o->adjoint}, {"kappa", o->kappa},
-                                     {"tolerance", 1e-14}, {"fixed_iterations", o->iterations}, {NULL, 0}};
+  const struct setting settings[] = {{"volume", o->saturated}, {"gradient", o->adjoint}, {"kappa", o->kappa}, 
+                                     {"tolerance", 1e-14}, {"fixed_iterations", o->iterations},
+                                     {o->strategy == SC ? "density" : NULL, o->real_density}, {NULL, 0}};
   cloud_run(&a, strategies[o->strategy], settings, 1);
   twin_step(&b, o);
   assert_same_cloud(&a, &b, o->iterations ? 1 : 2);
@@ -279,7 +286,7 @@ static void one_step(void **unused)
   for (int strategy = SA; strategy <= SC; strategy++)
     for (int form = 0; form < 4; form++)
       for (int walls = 0; walls < 2; walls++) {
-        const struct choices o = {strategy, form & 1, form >> 1, 4, (double)(real)0.1};
+        const struct choices o = {strategy, form & 1, form >> 1, form & 1, 4, (double)(real)0.1};
         print_message("%s, form %d, %s\n", strategies[strategy]->name, form, walls ? "walls" : "free");
         compare(&o, walls, 11 + (unsigned long long)form);
       }
@@ -291,7 +298,7 @@ static void converged_step(void **unused)
 {
   (void)unused;
   for (int strategy = SA; strategy <= SC; strategy++) {
-    const struct choices o = {strategy, 1, 0, 0, 0.1};
+    const struct choices o = {strategy, 1, 0, strategy != SA, 0, 0.1};
     compare(&o, 1, 5);
   }
 }
