@@ -22,7 +22,7 @@
   "Eq. (17) is applied to the velocity, on approach only: as printed it adds m/s to Pa/m\n"                \
   "Algorithm 1 starts its last line from v*, not from v^n\n"                                               \
   "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: removed, "   \
-  "with a Neumann condition; a diagonal stays at least 0.05 alpha_0\n"                                     \
+  "with a Neumann condition\n"                                                                             \
   "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones compression "     \
   "hides\n"                                                                                                \
   "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the kernel sum "  \
@@ -36,7 +36,6 @@ enum { OFFSET_FIXED, OFFSET_RANDOM };
 enum { SHIFTS = 5 };                          /* PBF iterations of S.B */
 enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
 #define SATURATION ((real)0.85)               /* kernel sum at which a virtual particle counts as full */
-#define LEAST_DIAGONAL ((real)0.05)           /* of alpha_0: an almost walled-in pressure stays finite */
 #define SOLID ((real)0.001)                   /* fluid part of the kernel sum below which it is solid */
 
 #define PARAMS(P)                                                                                          \
@@ -147,7 +146,7 @@ STAGE void matrix(const state *s, int I)
     open += to_fluid;
   }
   const real sum_full = sum(full), to_solid = sum_full - sum(open);
-  s->diag[I] = mine > 0 ? larger(larger(sum_full, s->alpha0) - to_solid, LEAST_DIAGONAL * s->alpha0) : 1;
+  s->diag[I] = mine > 0 ? larger(larger(sum_full, s->alpha0) - to_solid, (real)1e-6 * s->alpha0) : 1;
   s->pI[I] = 0;
 }
 

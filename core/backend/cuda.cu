@@ -49,6 +49,13 @@ static cudaError_t look_for_gpu(void)
   return devices > 0 ? cudaFuncGetAttributes(&kernel, (const void *)combine) : cudaErrorNoDevice;
 }
 
+static const char *reason_of(cudaError_t error)
+{
+  int driver = 0;
+  const cudaError_t asked = cudaDriverGetVersion(&driver);
+  return asked == cudaSuccess && driver == 0 ? "no NVIDIA driver" : cudaGetErrorString(error);
+}
+
 status backend_check(void)
 {
   static int found;
@@ -58,7 +65,7 @@ status backend_check(void)
     return status_set(ERR_SKIPPED,
                       "this variant needs a GPU that it was built for, and found none: %s "
                       "('--backend openmp' needs none)",
-                      cudaGetErrorString(error));
+                      reason_of(error));
   found = 1;
   clock_settle = settle;
   return OK;

@@ -39,7 +39,6 @@ static unsigned fields_needed(const struct solver *solver, unsigned asks)
 {
   unsigned needs = solver->needs | HAS(x) | HAS(v) | HAS(id);
   if (asks & CAN(XSPH)) needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
-  if (!(asks & CAN(WALLS))) needs &= ~(unsigned)HAS(normal);
   return needs;
 }
 

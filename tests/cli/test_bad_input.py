@@ -5,7 +5,7 @@ memory or the run failed), and leaves no file behind."""
 import os
 import resource
 import signal
-import unittest
+import subprocess
 
 import cli_case
 from cli_case import Case
@@ -198,6 +198,8 @@ class Outputs(Refusal):
             self.refused(*PATCH, flag, "folder/", says=["'folder/'", "folder"])
             self.refused(*PATCH, flag, "new/", says="folder")
             self.refused(*PATCH, flag, "/proc/a", says="'/proc/a'")
+        self.refused(*PATCH, "-o", "a", "--json", "none/b", says="'none/b'")
+        self.refused(*PATCH, "-o", "none/a", "--json", "b", says="'none/a'")
         self.refused(*PATCH, "-o", "/dev/null", says="not a regular file")
         if os.geteuid():
             (self.dir / "folder").chmod(0o500)
@@ -235,12 +237,38 @@ class Outputs(Refusal):
         long = ("--t-end", "1", "--set", "samples=1000", "--quiet", "--json", "a.json")
         self.refused(*PATCH[:-2], *long, says=["a.json", "too large"], preexec_fn=limit)
 
+    def with_memory(self, most, *words):
+        """(exit code, what was said) of a run with so many bytes of address space."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (most, most))
+        with self.start("run", "rotating-patch", "--quiet", *words, preexec_fn=limit,
+                        stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            out, err = process.communicate(timeout=cli_case.LONGEST)
+        self.assertEqual(out, b"")
+        return process.returncode, err.decode()
+
     def test_little_memory(self):
-        for room in range(100, 221, 20):  # MiB: it ends in many places
-            def limit(most=room << 20):
-                resource.setrlimit(resource.RLIMIT_AS, (most, most))
-            self.refused("run", "rotating-patch", "--solver", "dual-sc", "--spacing", "0.0004",
-                         "--quiet", says="memory", code=3, preexec_fn=limit)
+        """From what a tiny run needs up to what this one needs, so that it ends in many places."""
+        for solver in ("dual-sc", "dfsph"):
+            words = ("--solver", solver, "--t-end", "0.001", "-o", "a", "--spacing")
+            low, high = 1 << 20, 1 << 30
+            while high - low > 1 << 20:
+                middle = (low + high) // 2
+                enough = self.with_memory(middle, *words, "0.03")[0] == 0
+                low, high = (low, middle) if enough else (middle, high)
+            (self.dir / "a").unlink()
+            endings, code = set(), 3
+            while code:
+                high += 1 << 20
+                code, err = self.with_memory(high, *words, "0.001")
+                if code:
+                    self.assertIn(code, (2, 3), err)
+                    self.one_sentence(err)
+                    self.assertRegex(err, "memory|writing failed")  # HDF5 does not say why
+                    self.assertEqual(self.files(), [])
+                    endings.add(err)
+            self.assertGreater(len(endings), 5)
+            (self.dir / "a").unlink()
 
     def test_more_particles_than_the_machine_holds(self):
         machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")

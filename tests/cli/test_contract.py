@@ -5,7 +5,6 @@ import math
 import re
 import subprocess
 import sys
-import unittest
 
 import cli_case
 from cli_case import Case, frame, read_json

@@ -165,7 +165,7 @@ static void matrix(const struct cloud *c)
       full += a;
       if (!s.fluid[J]) to_solid += a;
     }
-    A[I][I] = s.fluid[I] ? fmax(fmax(full, alpha0) - to_solid, 0.05 * alpha0) : 1;
+    A[I][I] = s.fluid[I] ? fmax(fmax(full, alpha0) - to_solid, 1e-6 * alpha0) : 1;
   }
 }
 
