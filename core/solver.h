@@ -1,4 +1,5 @@
-/* solver.h - the contract of a pressure solver: one const table per method, and what the runner offers to it. */
+/* solver.h - the contract of a pressure solver: one const table per method, and what the runner
+ * offers to it. */
 #ifndef SOLVER_H
 #define SOLVER_H
 #include "base/param.h"
@@ -12,16 +13,17 @@ extern "C" {
 
 #define SOLVER_ABI 1
 
-/* What a scene may ask and a solver can do. The text completes "the solver cannot ..." in the compatibility table. */
-#define ABILITY_LIST(A)                                                       \
-  A(2D, "run in two dimensions")                                              \
-  A(3D, "run in three dimensions")                                            \
-  A(WALLS, "handle wall particles")                                           \
-  A(FREE_SURFACE, "handle a free surface")                                    \
-  A(GRAVITY, "apply a body force")                                            \
-  A(XSPH, "apply XSPH viscosity")                                             \
-  A(PERIODIC, "run in a periodic domain")                                     \
-  A(PROJECT, "project velocities without moving the particles")               \
+/* What a scene may ask and a solver can do. The text completes "the solver cannot ..." in the
+ * compatibility table. */
+#define ABILITY_LIST(A)                                         \
+  A(2D, "run in two dimensions")                                \
+  A(3D, "run in three dimensions")                              \
+  A(WALLS, "handle wall particles")                             \
+  A(FREE_SURFACE, "handle a free surface")                      \
+  A(GRAVITY, "apply a body force")                              \
+  A(XSPH, "apply XSPH viscosity")                               \
+  A(PERIODIC, "run in a periodic domain")                       \
+  A(PROJECT, "project velocities without moving the particles") \
   A(MOMENTUM, "keep linear momentum to rounding")
 #define A(name, text) ABILITY_##name,
 enum ability { ABILITY_LIST(A) NUM_ABILITIES };
@@ -31,46 +33,49 @@ enum ability { ABILITY_LIST(A) NUM_ABILITIES };
 struct run; /* owns particles, pair lists, clocks, results; opaque to solvers */
 
 /* What the runner keeps up to date at the head of every solver's state. */
-#define VIEW                                                                                  \
-  struct particles p;                                                                         \
-  struct pairs nb;    /* fluid -> fluid and wall, at the positions of the last sort */        \
-  struct grid grid;   /* of the last sort */                                                  \
-  const int *cells;   /* first fluid particle of each cell of the grid [num_cells + 1] */     \
-  real dt;            /* time step [s] */                                                     \
-  real time;          /* time at the start of the step [s] */                                 \
-  real rho0;          /* rest density [kg/m^3] */                                             \
-  real dx;            /* particle spacing [m] */                                              \
-  real mass;          /* of a particle in a full lattice of density rho0 [kg, 2-D: kg/m] */   \
-  real xsph;          /* XSPH coefficient per step [1] */                                     \
-  vec gravity         /* body force [m/s^2] */
+#define VIEW                                                                              \
+  struct particles p;                                                                     \
+  struct pairs nb;  /* fluid -> fluid and wall, at the positions of the last sort */      \
+  struct grid grid; /* of the last sort */                                                \
+  const int *cells; /* first fluid particle of each cell of the grid [num_cells + 1] */   \
+  real dt;          /* time step [s] */                                                   \
+  real time;        /* time at the start of the step [s] */                               \
+  real rho0;        /* rest density [kg/m^3] */                                           \
+  real dx;          /* particle spacing [m] */                                            \
+  real mass;        /* of a particle in a full lattice of density rho0 [kg, 2-D: kg/m] */ \
+  real xsph;        /* XSPH coefficient per step [1] */                                   \
+  vec gravity       /* body force [m/s^2] */
 struct view {
   VIEW;
 };
 
 #define FIELD_MEMBER(type, name, where, life, unit, meaning) type *name;
-#define FIELD_ROW(type, name, where, life, unit, meaning)                       \
+#define FIELD_ROW(type, name, where, life, unit, meaning) \
   {#name, unit, meaning, where, life, FIELD_COMPONENTS(type), sizeof(type), offsetof(state, name)},
 #define FIELD_COMPONENTS(type) (FIELD_IS_##type ? (int)(sizeof(type) / sizeof(real)) : 0)
 #define FIELD_IS_real 1
 #define FIELD_IS_vec 1
 #define FIELD_IS_int 0
-#define FIELD_TABLE(LIST) {LIST(FIELD_ROW)}
+#define FIELD_TABLE(LIST) \
+  {                       \
+    LIST(FIELD_ROW)       \
+  }
 
 /* The slots are in this order in every table (C++20 wants designated initialisers so). */
 struct solver {
-  int abi;             /* REQUIRED: SOLVER_ABI */
-  const char *name;    /* REQUIRED: as users type it, lower case with hyphens */
-  const char *about;   /* REQUIRED: one line */
-  const char *paper;   /* REQUIRED: citation */
-  const char *doi;     /* REQUIRED */
+  int abi;                 /* REQUIRED: SOLVER_ABI */
+  const char *name;        /* REQUIRED: as users type it, lower case with hyphens */
+  const char *about;       /* REQUIRED: one line */
+  const char *paper;       /* REQUIRED: citation */
+  const char *doi;         /* REQUIRED */
   const char *differences; /* REQUIRED: from the paper, one per line; "" if none */
-  unsigned needs;      /* REQUIRED: HAS(..) of the public fields it reads or writes */
-  unsigned can;        /* REQUIRED: CAN(..) */
+  unsigned needs;          /* REQUIRED: HAS(..) of the public fields it reads or writes */
+  unsigned can;            /* REQUIRED: CAN(..) */
   const struct param *params;
   int num_params;
   const struct field *fields; /* private fields */
   int num_fields;
-  size_t state_size;   /* REQUIRED: sizeof(state); a state begins with VIEW */
+  size_t state_size; /* REQUIRED: sizeof(state); a state begins with VIEW */
   /* After the particles were placed and before the first step. Optional. */
   status (*start)(struct run *run, void *state);
   /* Advance x and v from `time` to time + dt. REQUIRED. */
@@ -85,7 +90,8 @@ struct solver {
   void (*stop)(struct run *run, void *state);
 };
 
-/* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers valid --- */
+/* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers
+ * valid --- */
 
 /* x += dt v for the fluid particles. */
 status run_move(struct run *run);
@@ -93,47 +99,56 @@ status run_move(struct run *run);
 /* Sort the fluid by cell and list its neighbours into state->nb. */
 status run_neighbours(struct run *run);
 
-/* rho_i = sum_j m_j W_ij over fluid and walls (state->p.rho), and the fluid's volumes m/rho where they are needed (p.V); once
- * per step and sort. */
+/* rho_i = sum_j m_j W_ij over fluid and walls (state->p.rho), and the fluid's volumes m/rho where
+ * they are needed (p.V); once per step and sort. */
 status run_density(struct run *run);
 
-/* v += dt gravity, then what the scene asks of viscosity (XSPH: v_i += xsph sum_j V_ij (v_j - v_i) W_ij over the fluid). */
+/* v += dt gravity, then what the scene asks of viscosity (XSPH: v_i += xsph sum_j V_ij (v_j - v_i)
+ * W_ij over the fluid). */
 status run_forces(struct run *run);
-/* The XSPH part alone (for methods that apply it after the correction). Nothing where the scene asks for none. */
+/* The XSPH part alone (for methods that apply it after the correction). Nothing where the scene
+ * asks for none. */
 status run_viscosity(struct run *run);
 
-/* Record that an iterative solve named `what` ("pressure", "divergence") took `count` iterations and left the relative
- * residual; `converged` 0 if it hit its cap. */
+/* Record that an iterative solve named `what` ("pressure", "divergence") took `count` iterations
+ * and left the relative residual; `converged` 0 if it hit its cap. */
 void run_iterations(struct run *run, const char *what, int count, double residual, int converged);
 
-/* Stop the run as a result: it diverged, for this reason. Returns ERR_RUN for the solver to pass on. */
+/* Stop the run as a result: it diverged, for this reason. Returns ERR_RUN for the solver to pass
+ * on. */
 status run_diverged(struct run *run, const char *format, ...);
 
-/* --- a second set of particles, for solvers that declare VIRTUAL fields; one of them, a KEPT vec named X, is its position */
+/* --- a second set of particles, for solvers that declare VIRTUAL fields; one of them, a KEPT vec
+ * named X, is its position */
 
-/* Give the virtual set n particles: its fields hold n; KEPT ones keep their first min(n, old n) entries. */
+/* Give the virtual set n particles: its fields hold n; KEPT ones keep their first min(n, old n)
+ * entries. */
 status run_virtual(struct run *run, int n);
 
 /* Sort the virtual set by the cells of the last run_neighbours: permutes its KEPT fields. */
 status run_sort_virtual(struct run *run);
 
-/* A pair list of the solver's own, valid until the same slot is built again. SET_ALL is fluid and walls. The virtual set must
- * be sorted. `slot` is 0 .. MAX_PAIR_LISTS-1. */
+/* A pair list of the solver's own, valid until the same slot is built again. SET_ALL is fluid and
+ * walls. The virtual set must be sorted. `slot` is 0 .. MAX_PAIR_LISTS-1. */
 enum pair_set { SET_FLUID, SET_ALL, SET_VIRTUAL };
 enum { MAX_PAIR_LISTS = 4 };
-status run_pairs(struct run *run, int slot, enum pair_set from, enum pair_set to, struct pairs *list);
+status run_pairs(struct run *run, int slot, enum pair_set from, enum pair_set to,
+                 struct pairs *list);
 
 /* Rows of the walls for state->nb, which run_neighbours leaves without: [n, n_all). */
 status run_wall_rows(struct run *run);
 
-/* n keys to be filled by a stage; then sorted with repetitions dropped: the number left, < 0 on no memory. */
+/* n keys to be filled by a stage; then sorted with repetitions dropped: the number left, < 0 on no
+ * memory. */
 unsigned long long *run_keys(struct run *run, int n);
 int run_unique_keys(struct run *run, unsigned long long *keys, int n);
 
-/* Room for one real per slot of that pair list (coefficients), reused from step to step; NULL on no memory. */
+/* Room for one real per slot of that pair list (coefficients), reused from step to step; NULL on no
+ * memory. */
 real *run_coefficients(struct run *run, int slot, int num_slots);
 
-/* Random bits for this step: a counter-based stream of the run's seed; the same on CPU and GPU. in [0, 1) */
+/* Random bits for this step: a counter-based stream of the run's seed; the same on CPU and GPU. in
+ * [0, 1) */
 double run_random(const struct run *run, unsigned long long counter);
 
 long run_step_number(const struct run *run);

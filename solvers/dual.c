@@ -1,78 +1,82 @@
 /* The dual-particle approach: pressures live on virtual particles, velocities on real ones.
- * S. Liu, X. He, Y. Guo, Y. Chang, W. Wang, ACM Trans. Graph. 43(3), Article 28 (2024), doi:10.1145/3649888.
- *   S.A  virtual particles are the real ones: ISPH of Cummins & Rudman 1999, J. Comput. Phys. 152, 584-607, with the
- *        semi-analytical free surface of Nair & Tomar 2014, Comput. Fluids 102, 304-314
- *   S.B  they are copies, evened out by a few PBF iterations (Macklin & Mueller 2013)
- *   S.C  they are nodes of a regular grid near the real ones
- * Equation numbers are the first paper's. Lower case indices are real particles, upper case virtual ones.
+ * S. Liu, X. He, Y. Guo, Y. Chang, W. Wang, ACM Trans. Graph. 43(3), Article 28 (2024),
+ * doi:10.1145/3649888. S.A  virtual particles are the real ones: ISPH of Cummins & Rudman 1999, J.
+ * Comput. Phys. 152, 584-607, with the semi-analytical free surface of Nair & Tomar 2014, Comput.
+ * Fluids 102, 304-314 S.B  they are copies, evened out by a few PBF iterations (Macklin & Mueller
+ * 2013) S.C  they are nodes of a regular grid near the real ones Equation numbers are the first
+ * paper's. Lower case indices are real particles, upper case virtual ones.
  *
  * Differences from the paper: see DIFFERENCES below. */
 #include "../core/linear/cg.h"
 #include "../core/solver.h"
 #include <string.h>
 
-#define DIFFERENCES                                                                                        \
-  "Eqs. (9), (14), (15) use |W'|: as printed the Laplacian has the wrong sign\n"                           \
-  "Eq. (13) is divided once more by dt, and kappa is a number of order 0.1 (auto: 0 without gravity)\n"    \
-  "Eq. (8) printed, or saturated at the lattice's volume (default): the printed one lets interior "        \
-  "particles of a jittered lattice act as free surface\n"                                                  \
-  "V_I is scaled by (virtual spacing / dx)^d, without which the pressure comes out multiplied by it\n"     \
-  "CG runs in the V-weighted inner product, where the printed matrix is symmetric\n"                       \
-  "Eq. (16) printed, or the exact adjoint of Eq. (11) (gradient = adjoint)\n"                              \
-  "Eq. (17) is applied to the velocity, on approach only: as printed it adds m/s to Pa/m\n"                \
-  "Algorithm 1 starts its last line from v*, not from v^n\n"                                               \
-  "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: removed, "   \
-  "with a Neumann condition\n"                                                                             \
-  "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones compression "     \
-  "hides\n"                                                                                                \
-  "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the kernel sum "  \
-  "of a perfect lattice ripples about rho0, which alone raises a spurious pressure\n"                      \
+#define DIFFERENCES                                                                                \
+  "Eqs. (9), (14), (15) use |W'|: as printed the Laplacian has the wrong sign\n"                   \
+  "Eq. (13) is divided once more by dt; kappa is a number of order 0.1 (0 without gravity)\n"      \
+  "Eq. (8) printed, or saturated at the lattice's volume (default): the printed one lets the "     \
+  "interior of a jittered lattice act as free surface\n"                                           \
+  "V_I is scaled by (virtual spacing / dx)^d, or the pressure comes out multiplied by it\n"        \
+  "CG runs in the V-weighted inner product, where the printed matrix is symmetric\n"               \
+  "Eq. (16) printed, or the exact adjoint of Eq. (11) (gradient = adjoint)\n"                      \
+  "Eq. (17) acts on the velocity, on approach only: as printed it adds m/s to Pa/m\n"              \
+  "Algorithm 1 starts its last line from v*, not from v^n\n"                                       \
+  "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: "    \
+  "removed, with a Neumann condition\n"                                                            \
+  "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones "         \
+  "compression hides\n"                                                                            \
+  "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the "     \
+  "kernel sum of a perfect lattice ripples about rho0, which alone raises a spurious pressure\n"   \
   "S.C: nearest node and a stencil of 13 (2-D) or 33 (3-D) nodes; keys of 64 bits"
 
 enum { VOLUME_PRINTED, VOLUME_SATURATED };
 enum { GRADIENT_PRINTED, GRADIENT_ADJOINT };
 enum { DENSITY_VIRTUAL, DENSITY_REAL };
 enum { OFFSET_FIXED, OFFSET_RANDOM };
-enum { SHIFTS = 5 };                          /* PBF iterations of S.B */
+enum { SHIFTS = 5 };                                  /* PBF iterations of S.B */
 enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
-#define SATURATION ((real)0.85)               /* kernel sum at which a virtual particle counts as full */
-#define SOLID ((real)0.001)                   /* fluid part of the kernel sum below which it is solid */
+#define SATURATION ((real)0.85) /* kernel sum at which a virtual particle counts as full */
+#define SOLID ((real)0.001)     /* fluid part of the kernel sum below which it is solid */
 
-#define PARAMS(P)                                                                                          \
-  P(volume, VOLUME_SATURATED, 0, 1, "printed|saturated", "volume of a virtual particle, Eq. (8)")          \
-  P(gradient, GRADIENT_PRINTED, 0, 1, "printed|adjoint", "pressure gradient: Eq. (16) or the adjoint of Eq. (11)") \
-  P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without")            \
-  P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                                     \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                                  \
+#define PARAMS(P)                                                                                 \
+  P(volume, VOLUME_SATURATED, 0, 1, "printed|saturated", "volume of a virtual particle, Eq. (8)") \
+  P(gradient, GRADIENT_PRINTED, 0, 1, "printed|adjoint",                                          \
+    "pressure gradient: Eq. (16) or the adjoint of Eq. (11)")                                     \
+  P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without")   \
+  P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                            \
+  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                         \
   P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
 
-#define PARAMS_SC(P)                                                                               \
-  PARAMS(P)                                                                                        \
-  P(density, DENSITY_REAL, 0, 1, "virtual|real", "where the density of Eq. (13) is taken")         \
-  P(virtual_spacing, 1, 0.5, 4, "dx", "spacing of the virtual particles")                          \
+#define PARAMS_SC(P)                                                                       \
+  PARAMS(P)                                                                                \
+  P(density, DENSITY_REAL, 0, 1, "virtual|real", "where the density of Eq. (13) is taken") \
+  P(virtual_spacing, 1, 0.5, 4, "dx", "spacing of the virtual particles")                  \
   P(offset, OFFSET_FIXED, 0, 1, "fixed|random", "origin of the grid: fixed, or anew in every step")
 
-#define FIELDS(F)                                                                                          \
-  F(real, VI, VIRTUAL, STEP, "m^d", "volume of a virtual particle, Eq. (8)")                               \
-  F(real, fluid, VIRTUAL, STEP, "1", "1, or 0 for a solid virtual particle")                               \
-  F(real, source, VIRTUAL, STEP, "1/s^2", "right-hand side D_I, Eqs. (11) and (13)")                       \
-  F(real, diag, VIRTUAL, STEP, "m^3/kg/m^2", "diagonal of the matrix, Eq. (15), clamped to alpha_0")       \
-  F(real, pI, VIRTUAL, STEP, "Pa", "pressure of a virtual particle")                                       \
-  F(real, r, VIRTUAL, STEP, "1/s^2", "residual of CG")                                                     \
-  F(real, d, VIRTUAL, STEP, "Pa", "direction of CG")                                                       \
-  F(real, q, VIRTUAL, STEP, "1/s^2", "matrix times direction of CG")                                       \
-  F(vec, lift, VIRTUAL, STEP, "1/m", "sum_k V_k grad_J W_Jk / sum_k V_k W_Jk of the adjoint gradient") \
-  F(vec, hold, WALL, STEP, "m/s", "change of velocity that holds a particle off the walls, Eq. (17)")
+#define FIELDS(F)                                                                    \
+  F(real, VI, VIRTUAL, STEP, "m^d", "volume of a virtual particle, Eq. (8)")         \
+  F(real, fluid, VIRTUAL, STEP, "1", "1, or 0 for a solid virtual particle")         \
+  F(real, source, VIRTUAL, STEP, "1/s^2", "right-hand side D_I, Eqs. (11) and (13)") \
+  F(real, diag, VIRTUAL, STEP, "m^3/kg/m^2",                                         \
+    "diagonal of the matrix, Eq. (15), clamped to alpha_0")                          \
+  F(real, pI, VIRTUAL, STEP, "Pa", "pressure of a virtual particle")                 \
+  F(real, r, VIRTUAL, STEP, "1/s^2", "residual of CG")                               \
+  F(real, d, VIRTUAL, STEP, "Pa", "direction of CG")                                 \
+  F(real, q, VIRTUAL, STEP, "1/s^2", "matrix times direction of CG")                 \
+  F(vec, lift, VIRTUAL, STEP, "1/m",                                                 \
+    "sum_k V_k grad_J W_Jk / sum_k V_k W_Jk of the adjoint gradient")                \
+  F(vec, hold, WALL, STEP, "m/s",                                                    \
+    "change of velocity that holds a particle off the walls, Eq. (17)")
 
-#define FIELDS_SB(F)                                                                                       \
-  FIELDS(F)                                                                                                \
-  F(vec, X, VIRTUAL, KEPT, "m", "position of a virtual particle")                                          \
-  F(real, excess, VIRTUAL, KEPT, "1", "max(rho - rho0, 0) / rho0 at the real particle")             \
-  F(real, lambda, ALL, STEP, "m^2", "multiplier of the shifting, Macklin & Mueller Eq. (11)")              \
+#define FIELDS_SB(F)                                                                          \
+  FIELDS(F)                                                                                   \
+  F(vec, X, VIRTUAL, KEPT, "m", "position of a virtual particle")                             \
+  F(real, excess, VIRTUAL, KEPT, "1", "max(rho - rho0, 0) / rho0 at the real particle")       \
+  F(real, lambda, ALL, STEP, "m^2", "multiplier of the shifting, Macklin & Mueller Eq. (11)") \
   F(vec, shift, ALL, STEP, "m", "displacement of a virtual particle in one shifting iteration")
 
-#define FIELDS_SC(F)                                                                                       \
-  FIELDS(F)                                                                                                \
+#define FIELDS_SC(F) \
+  FIELDS(F)          \
   F(vec, X, VIRTUAL, KEPT, "m", "position of a virtual particle")
 
 /* One state for the three strategies; a strategy's tables name the members that it uses. */
@@ -82,29 +86,34 @@ typedef struct {
   FIELDS_SB(FIELD_MEMBER)
   struct pairs at_virtual, among_virtual, at_real; /* I -> j, I -> J, i -> J */
   int num_virtual;
-  real *alpha;                                     /* alpha_IJ, one per slot of among_virtual */
-  real alpha0, unit_volume, solid_volume;          /* Eq. (15) of a full lattice; V_I and V_s of a full lattice */
-  vec origin;                                      /* S.C: position of the node (0, .., 0) [m] */
-  unsigned long long *keys;                        /* S.C: nodes as keys */
+  real *alpha; /* alpha_IJ, one per slot of among_virtual */
+  real alpha0, unit_volume,
+    solid_volume;           /* Eq. (15) of a full lattice; V_I and V_s of a full lattice */
+  vec origin;               /* S.C: position of the node (0, .., 0) [m] */
+  unsigned long long *keys; /* S.C: nodes as keys */
   int num_keys;
 } state;
 
-/* --- Sec. 3.3: volumes and the source term on virtual particles ------------------------------------------- */
+/* --- Sec. 3.3: volumes and the source term on virtual particles */
 
 /* Eq. (7)   V_j = m / rho_j on the fluid; on the walls the volume of a full lattice */
-STAGE lanes volume_j(const state *s, struct packet Ij) { return or_else(of(s->p.V, Ij), s->solid_volume); }
+STAGE lanes volume_j(const state *s, struct packet Ij)
+{
+  return or_else(of(s->p.V, Ij), s->solid_volume);
+}
 
-/* Eq. (8)   V_I = sum_j V_j^2 W_Ij,  or saturated  V_I = V_0 min(1, c_I / 0.85),  c_I = sum_j V_j W_Ij
+/* Eq. (8)   V_I = sum_j V_j^2 W_Ij, or saturated V_I = V_0 min(1, c_I/0.85), c_I = sum_j V_j W_Ij
  * Eq. (12)  vbar_I = sum_fluid V_j v_j W_Ij / sum_fluid V_j W_Ij
  * Eq. (11)  D_I = -1/dt sum_j V_j (v_j - vbar_I) . grad_I W_Ij
- * Eq. (13)  D_I += kappa max(rho_I - rho0, 0) / (rho0 dt^2), or with the mean over fluid in place of rho_I,
+ * Eq. (13)  D_I += kappa max(rho_I - rho0, 0) / (rho0 dt^2),
+ *           or with the mean over fluid in place of rho_I,
  *           sum_fluid V_j (rho_j/rho0 - 1) W_Ij = sum_fluid (V_0 - V_j) W_Ij */
 STAGE void source(const state *s, int I)
 {
   lanes c = NO_LANES, c_fluid = NO_LANES, V2 = NO_LANES, number = NO_LANES, div = NO_LANES;
   lanes crowd = NO_LANES;
   vecs momentum = NO_VECS, gradient = NO_VECS;
-  for_pairs(&s->at_virtual, I, Ij) {
+  for_pairs (&s->at_virtual, I, Ij) {
     const lanes w = W(&s->at_virtual, Ij), V = volume_j(s, Ij), fluid_w = of(s->p.V, Ij) * w;
     c += V * w;
     V2 += V * V * w;
@@ -116,7 +125,7 @@ STAGE void source(const state *s, int I)
   const real cI = sum(c), cf = sum(c_fluid);
   const int is_fluid = cf > SOLID * cI;
   const vec vbar = is_fluid ? times(1 / cf, sum(momentum)) : zero();
-  for_pairs(&s->at_virtual, I, Ij) {
+  for_pairs (&s->at_virtual, I, Ij) {
     const vecs Vg = scale(volume_j(s, Ij), gradW(&s->at_virtual, Ij));
     div += dot(difference(vbar, of(s->p.v, Ij)), Vg);
     gradient = add(gradient, Vg);
@@ -125,40 +134,46 @@ STAGE void source(const state *s, int I)
   const real nearby = is_fluid ? larger(sum(crowd) / cf, 0) : 0;
   const real dense = s->excess ? s->excess[I] : s->density == DENSITY_REAL ? nearby : at_nodes;
   const real scaled = s->unit_volume / s->solid_volume;
-  s->VI[I] = s->volume == VOLUME_PRINTED ? scaled * sum(V2) : s->unit_volume * smaller(1, cI / SATURATION);
+  s->VI[I] =
+    s->volume == VOLUME_PRINTED ? scaled * sum(V2) : s->unit_volume * smaller(1, cI / SATURATION);
   s->fluid[I] = is_fluid;
   s->source[I] = is_fluid ? sum(div) / s->dt + s->kappa * dense / sq(s->dt) : 0;
   if (s->lift) s->lift[I] = is_fluid ? times(1 / cf, sum(gradient)) : zero();
 }
 
-/* --- Sec. 4: the pressure Poisson equation ------------------------------------------------------------------ */
+/* --- Sec. 4: the pressure Poisson equation */
 
-/* Eq. (15)  alpha_IJ = 2/rho0 V_J |W'_IJ| / (r_IJ + eta),  alpha_I = max(sum_J alpha_IJ, alpha_0) - sum_solid alpha_IJ */
+/* Eq. (15)  alpha_IJ = 2/rho0 V_J |W'_IJ| / (r_IJ + eta),
+ *           alpha_I = max(sum_J alpha_IJ, alpha_0) - sum_solid alpha_IJ */
 STAGE void matrix(const state *s, int I)
 {
   lanes full = NO_LANES, open = NO_LANES;
   const real mine = s->fluid[I];
-  for_pairs(&s->among_virtual, I, IJ) {
-    const lanes a = positive(IJ.r, 2 / s->rho0 * of(s->VI, IJ) * slope_over_r(&s->among_virtual, IJ));
+  for_pairs (&s->among_virtual, I, IJ) {
+    const lanes a =
+      positive(IJ.r, 2 / s->rho0 * of(s->VI, IJ) * slope_over_r(&s->among_virtual, IJ));
     const lanes to_fluid = mine * of(s->fluid, IJ) * a;
     keep(s->alpha, IJ, to_fluid);
     full += a;
     open += to_fluid;
   }
   const real sum_full = sum(full), to_solid = sum_full - sum(open);
-  s->diag[I] = mine > 0 ? larger(larger(sum_full, s->alpha0) - to_solid, (real)1e-6 * s->alpha0) : 1;
+  s->diag[I] =
+    mine > 0 ? larger(larger(sum_full, s->alpha0) - to_solid, (real)1e-6 * s->alpha0) : 1;
   s->pI[I] = 0;
 }
 
 /* Eq. (16)  G_i = sum_J V_J p_J grad_i W_iJ;   Eq. (18)  v_i = v*_i - dt/rho0 G_i
  * adjoint   v_i = v*_i - dt/rho_i sum_J V_J p_J [grad_i W_iJ + W_iJ lift_J]
- * and the pressure at the real particle, for the record: p_i = sum_J V_J p_J W_iJ / sum_J V_J W_iJ */
+ * and the pressure at the real particle, for the record: p_i = sum_J V_J p_J W_iJ / sum_J V_J W_iJ
+ */
 STAGE void correct(const state *s, int i)
 {
   vecs G = NO_VECS;
   lanes pressure = NO_LANES, weight = NO_LANES;
-  for_pairs(&s->at_real, i, iJ) {
-    const lanes V = of(s->VI, iJ) * of(s->fluid, iJ), Vp = V * of(s->pI, iJ), w = W(&s->at_real, iJ);
+  for_pairs (&s->at_real, i, iJ) {
+    const lanes V = of(s->VI, iJ) * of(s->fluid, iJ), Vp = V * of(s->pI, iJ),
+                w = W(&s->at_real, iJ);
     G = add(G, scale(Vp, gradW(&s->at_real, iJ)));
     if (s->lift) G = add(G, scale(Vp * w, of(s->lift, iJ)));
     pressure += Vp * w;
@@ -173,7 +188,7 @@ STAGE void correct(const state *s, int i)
 STAGE void hold_off_walls(const state *s, int i)
 {
   vecs dv = NO_VECS;
-  for_neighbours(s, i, ij) {
+  for_neighbours (s, i, ij) {
     const vecs n = of(s->p.normal, ij);
     const lanes approach = at_most(dot(diff(s->p.v, ij), n), 0);
     dv = add(dv, scale(-s->solid_volume * W(&s->nb, ij) * approach, n));
@@ -201,12 +216,12 @@ static status solve(struct run *run, state *s)
   cg.q = s->q;
   const int fixed = (int)s->fixed_iterations;
   const struct cg_result result =
-      cg_solve(&cg, fixed ? 0 : (double)s->tolerance, fixed ? fixed : (int)s->max_iterations);
+    cg_solve(&cg, fixed ? 0 : (double)s->tolerance, fixed ? fixed : (int)s->max_iterations);
   run_iterations(run, "pressure", result.iterations, result.residual, fixed || result.converged);
   return OK;
 }
 
-/* Sec. 3.4, steps (2) to (6) but for the move; the virtual particles and the three lists are in the state. */
+/* Sec. 3.4, steps (2) to (6) but for the move; virtual particles and lists are in the state. */
 static status project_on(struct run *run, state *s)
 {
   TRY(solve(run, s));
@@ -218,7 +233,7 @@ static status project_on(struct run *run, state *s)
   return OK;
 }
 
-/* --- Sec. 5, S.A: the real particles themselves -------------------------------------------------------------- */
+/* --- Sec. 5, S.A: the real particles themselves */
 
 static status project_sa(struct run *run, void *self)
 {
@@ -231,7 +246,7 @@ static status project_sa(struct run *run, void *self)
   return project_on(run, s);
 }
 
-/* --- S.B: copies, evened out ------------------------------------------------------------------------------------ */
+/* --- S.B: copies, evened out */
 
 STAGE void copy(const state *s, int I)
 {
@@ -239,12 +254,13 @@ STAGE void copy(const state *s, int I)
   s->excess[I] = I < s->p.n ? larger(s->p.rho[I] / s->rho0 - 1, 0) : 0;
   s->lambda[I] = 0;
 }
-/* Macklin & Mueller Eq. (11)  lambda_I = -C_I / (sum_k |grad_k C_I|^2 + eps),  C_I = max(rho_I / rho0 - 1, 0) */
+/* Macklin & Mueller Eq. (11)  lambda_I = -C_I / (sum_k |grad_k C_I|^2 + eps),  C_I = max(rho_I /
+ * rho0 - 1, 0) */
 STAGE void multiplier(const state *s, int I)
 {
   lanes number = NO_LANES, g2 = NO_LANES;
   vecs g = NO_VECS;
-  for_pairs(&s->at_real, I, IJ) {
+  for_pairs (&s->at_real, I, IJ) {
     const vecs dC = scale(s->solid_volume + NO_LANES, gradW(&s->at_real, IJ));
     number += W(&s->at_real, IJ);
     g = add(g, dC);
@@ -258,7 +274,7 @@ STAGE void multiplier(const state *s, int I)
 STAGE void displacement(const state *s, int I)
 {
   vecs dX = NO_VECS;
-  for_pairs(&s->at_real, I, IJ) {
+  for_pairs (&s->at_real, I, IJ) {
     const lanes both = s->lambda[I] + of(s->lambda, IJ);
     dX = add(dX, scale(both * s->solid_volume, gradW(&s->at_real, IJ)));
   }
@@ -292,7 +308,7 @@ static status project_sb(struct run *run, void *self)
   return project_on(run, s);
 }
 
-/* --- S.C: nodes of a grid ----------------------------------------------------------------------------------------- */
+/* --- S.C: nodes of a grid */
 
 enum { STENCIL = DIM == 2 ? 13 : 33, KEY_BITS = DIM == 2 ? 31 : 21 };
 #define NO_KEY (~0ULL)
@@ -310,7 +326,8 @@ STAGE void node_of(unsigned long long key, long long k[DIM])
     k[d] = (long long)(key & ((1ULL << KEY_BITS) - 1)) - KEY_ZERO;
 }
 
-/* The node nearest to a real particle; none for walls that the fluid cannot feel. */
+/* Sec. 5.1 (2)  k = round((x_i - x_0) / d_v), the node nearest to a real particle;
+ * none for walls that the fluid cannot feel. */
 STAGE void nearest(const state *s, int i)
 {
   long long k[DIM];
@@ -323,7 +340,8 @@ STAGE void nearest(const state *s, int i)
   s->keys[i] = felt ? key_of(k) : NO_KEY;
 }
 
-/* Candidates: the node and its neighbours in {-1, 0, 1}^d, and two steps along each axis. */
+/* Sec. 5.1 (2)  candidates k + s: the node and its neighbours, s in {-1, 0, 1}^d,
+ * and two steps along each axis. */
 STAGE void stencil(const state *s, int i)
 {
   long long k[DIM], step[DIM];
@@ -331,7 +349,8 @@ STAGE void stencil(const state *s, int i)
   node_of(s->keys[i], k);
   for (int n = 0; n < STENCIL; n++) {
     const int axis = n - (STENCIL - 2 * DIM), cube = n;
-    for (int d = 0, rest = cube; d < DIM; d++, rest /= 3) step[d] = k[d] + (axis < 0 ? rest % 3 - 1 : 0);
+    for (int d = 0, rest = cube; d < DIM; d++, rest /= 3)
+      step[d] = k[d] + (axis < 0 ? rest % 3 - 1 : 0);
     if (axis >= 0) step[axis / 2] += axis % 2 ? 2 : -2;
     out[n] = key_of(step);
   }
@@ -340,7 +359,8 @@ STAGE void place(const state *s, int I)
 {
   long long k[DIM];
   node_of(s->keys[s->num_keys + I], k);
-  for (int d = 0; d < DIM; d++) s->X[I].c[d] = s->origin.c[d] + s->virtual_spacing * s->dx * (real)k[d];
+  for (int d = 0; d < DIM; d++)
+    s->X[I].c[d] = s->origin.c[d] + s->virtual_spacing * s->dx * (real)k[d];
 }
 
 /* Sec. 5.1, steps (2) to (6) */
@@ -372,7 +392,7 @@ static status project_sc(struct run *run, void *self)
   return project_on(run, s);
 }
 
-/* --- Algorithm 1 ------------------------------------------------------------------------------------------- */
+/* --- Algorithm 1 */
 
 /* alpha_0 of Eq. (15): 2/rho0 V_0 sum |W'|/r over a full lattice of virtual particles. */
 static real full_lattice(const state *s, real spacing, real volume)
@@ -403,10 +423,10 @@ static status start(struct run *run, void *self)
 
 static status advance(struct run *run, state *s, status (*project)(struct run *, void *))
 {
-  TRY(run_move(run));       /* x += dt v, with the projected v */
+  TRY(run_move(run)); /* x += dt v, with the projected v */
   TRY(run_neighbours(run));
-  TRY(run_forces(run));     /* v* = v + dt g, then viscosity */
-  return project(run, s);   /* v = v* - dt/rho0 grad p */
+  TRY(run_forces(run));   /* v* = v + dt g, then viscosity */
+  return project(run, s); /* v = v* - dt/rho0 grad p */
 }
 static status step_sa(struct run *run, void *s) { return advance(run, (state *)s, project_sa); }
 static status step_sb(struct run *run, void *s) { return advance(run, (state *)s, project_sb); }
@@ -423,24 +443,25 @@ static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD
                           fields_sc[] = FIELD_TABLE(FIELDS_SC);
 
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
-#define DOES (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT))
+#define DOES \
+  (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT))
 
-#define STRATEGY(label, text, the_params, the_fields, the_step, the_project)                              \
-  {                                                                                                       \
-    .abi = SOLVER_ABI, .name = label, .about = text,                                                      \
-    .paper = "Liu, He, Guo, Chang & Wang 2024, ACM Trans. Graph. 43(3), 28", .doi = "10.1145/3649888",    \
-    .differences = DIFFERENCES, .needs = NEEDS, .can = DOES, .params = the_params,                        \
-    .num_params = COUNT(the_params), .fields = the_fields, .num_fields = COUNT(the_fields),               \
-    .state_size = sizeof(state), .start = start, .step = the_step, .project = the_project,                \
-    .max_dt = NULL, .uses = uses, .stop = NULL                                                            \
+#define STRATEGY(label, text, the_params, the_fields, the_step, the_project)             \
+  {                                                                                      \
+    .abi = SOLVER_ABI, .name = label, .about = text,                                     \
+    .paper = "Liu, He, Guo, Chang & Wang 2024, ACM Trans. Graph. 43(3), 28",             \
+    .doi = "10.1145/3649888", .differences = DIFFERENCES, .needs = NEEDS, .can = DOES,   \
+    .params = the_params, .num_params = COUNT(the_params), .fields = the_fields,         \
+    .num_fields = COUNT(the_fields), .state_size = sizeof(state), .start = start,        \
+    .step = the_step, .project = the_project, .max_dt = NULL, .uses = uses, .stop = NULL \
   }
 
-const struct solver solver_dual_sa = STRATEGY(
-    "dual-sa", "ISPH: pressures on the particles themselves (dual-particle strategy S.A)", params,
-    fields_sa, step_sa, project_sa);
-const struct solver solver_dual_sb = STRATEGY(
-    "dual-sb", "pressures on copies evened out by PBF shifting (dual-particle strategy S.B)", params,
-    fields_sb, step_sb, project_sb);
+const struct solver solver_dual_sa =
+  STRATEGY("dual-sa", "ISPH: pressures on the particles themselves (dual-particle strategy S.A)",
+           params, fields_sa, step_sa, project_sa);
+const struct solver solver_dual_sb =
+  STRATEGY("dual-sb", "pressures on copies evened out by PBF shifting (dual-particle strategy S.B)",
+           params, fields_sb, step_sb, project_sb);
 const struct solver solver_dual_sc = STRATEGY(
-    "dual-sc", "pressures on the nodes of a grid near the particles (dual-particle strategy S.C)",
-    params_sc, fields_sc, step_sc, project_sc);
+  "dual-sc", "pressures on the nodes of a grid near the particles (dual-particle strategy S.C)",
+  params_sc, fields_sc, step_sc, project_sc);

@@ -46,7 +46,7 @@ static status start_variant(int argc, char **argv, struct variant v)
   } else if (found != OK) {
     return found;
   }
-  /* on a shared machine, threads that spin at barriers cost up to 25 times the run; set it to active to have them spin */
+  /* threads that spin at barriers cost up to 25 times the run where the machine is shared */
   setenv("OMP_WAIT_POLICY", "passive", 0);
   execv(executable.text, argv);
   return status_set(ERR_IO, "the variant '%s' cannot be started", executable.text);

@@ -5,12 +5,12 @@
 extern "C" {
 #endif
 
-#define PHASE_LIST(P)                                                        \
-  P(OTHER, "other", "set-up, sampling and whatever is not named")            \
-  P(NEIGHBOURS, "neighbours", "sorting and pair lists")                      \
-  P(SOLVER, "solver", "the pressure solver's own work")                      \
-  P(INTEGRATE, "integrate", "moving particles, body forces, viscosity")      \
-  P(METRICS, "metrics", "evaluation of metrics and truths")                  \
+#define PHASE_LIST(P)                                                   \
+  P(OTHER, "other", "set-up, sampling and whatever is not named")       \
+  P(NEIGHBOURS, "neighbours", "sorting and pair lists")                 \
+  P(SOLVER, "solver", "the pressure solver's own work")                 \
+  P(INTEGRATE, "integrate", "moving particles, body forces, viscosity") \
+  P(METRICS, "metrics", "evaluation of metrics and truths")             \
   P(OUTPUT, "output", "writing results")
 
 #define P(name, text, about) PHASE_##name,

@@ -7,7 +7,8 @@
 extern "C" {
 #endif
 
-/* Bytes of particle memory, 64-byte aligned, contents undefined (all-ones, NaN as reals, with SPHBENCH_POISON). NULL: none left. */
+/* Bytes of particle memory, 64-byte aligned, contents undefined (all-ones, NaN as reals, with
+ * SPHBENCH_POISON). NULL: none left. */
 void *memory_take(size_t bytes);
 void memory_give(void *block, size_t bytes);
 

@@ -7,7 +7,8 @@
 extern "C" {
 #endif
 
-/* One parameter. A unit that contains '|' lists the words of a choice, whose value is the word's number from 0. */
+/* One parameter. A unit that contains '|' lists the words of a choice, whose value is the word's
+ * number from 0. */
 struct param {
   const char *name;
   double initial, low, high; /* default and allowed range, both ends included */
@@ -18,11 +19,14 @@ struct param {
 #define PARAM_MEMBER(name, initial, low, high, unit, meaning) real name;
 #define PARAM_ROW(name, initial, low, high, unit, meaning) \
   {#name, initial, low, high, unit, meaning, offsetof(state, name)},
-#define PARAM_TABLE(LIST) {LIST(PARAM_ROW)}
+#define PARAM_TABLE(LIST) \
+  {                       \
+    LIST(PARAM_ROW)       \
+  }
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
-/* The value [number, or index of the word of a choice] that `text` means for p, within p's range; else the user's error.
- * `where` names the place of the text ("--set", "plan.yaml:12"). */
+/* The value [number, or index of the word of a choice] that `text` means for p, within p's range;
+ * else the user's error. `where` names the place of the text ("--set", "plan.yaml:12"). */
 status param_parse(const struct param *p, const char *text, const char *where, double *value);
 
 /* The text that a user would write for this value; buf of at least 64 bytes is returned. */

@@ -35,8 +35,8 @@ void progress_show(struct progress *bar, double done, const char *note)
   if (done > 0.01) print_time(left, sizeof left, (now - bar->begun) * (1 / done - 1));
   const int full = (int)(done * WIDTH);
   fprintf(stderr, "\r\033[K%s [%.*s%.*s] %3.0f %%  %s%s  %s", bar->label, full,
-          "##############################", WIDTH - full, "..............................", 100 * done,
-          left, left[0] ? " left" : "", note);
+          "##############################", WIDTH - full, "..............................",
+          100 * done, left, left[0] ? " left" : "", note);
   fflush(stderr);
 }
 

@@ -1,4 +1,5 @@
-/* progress.h - a bar with the time left, on a terminal only; nothing when standard error is a file or --quiet was given. */
+/* progress.h - a bar with the time left, on a terminal only; nothing when standard error is a file
+ * or --quiet was given. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 #ifdef __cplusplus

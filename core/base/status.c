@@ -41,7 +41,7 @@ int status_exit_code(status code)
   case name: return exit_code;
     STATUS_LIST(S)
 #undef S
-    default: return 3;
+  default: return 3;
   }
 }
 

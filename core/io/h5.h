@@ -49,7 +49,7 @@ void h5_put_texts(struct h5 *h, hid_t parent, struct h5_label label, int count,
                   const char *const *texts);
 
 /* A dataset [0][width] (width 0: [0]) that grows; `chunk` rows are stored together. To be closed by
- * H5Dclose. Chunks are compressed only where each append fills `whole` ones: a chunk that is written
+ * H5Dclose. Chunks are compressed only where each append fills `whole` ones: a chunk written
  * again must keep its size, or a kill in between leaves it unreadable. */
 hid_t h5_column(struct h5 *h, hid_t parent, struct h5_label label, hid_t type, int width,
                 long chunk, int whole);

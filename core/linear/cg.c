@@ -45,7 +45,8 @@ struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
   sweep_over(residual, s, s->n);
   sum_over(norm_r, s, s->n, &rr);
   sum_over(r_dot_z, s, s->n, &rz);
-  while (result.iterations < max_iterations && (result.iterations == 0 || rr > tolerance * tolerance * bb)) {
+  while (result.iterations < max_iterations &&
+         (result.iterations == 0 || rr > tolerance * tolerance * bb)) {
     sum_over(apply, s, s->n, &dq);
     if (!(dq > 0)) break; /* the residual is zero, or the matrix is not positive definite */
     s->step = (real)(rz / dq);

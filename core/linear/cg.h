@@ -1,7 +1,7 @@
-/* cg.h - conjugate gradients with Jacobi's preconditioner in a weighted inner product, for operators
- *   (A p)_i = diag_i p_i - sum_j coef_ij p_j
- * that are symmetric and positive definite in  <a, b> = sum_i w_i a_i b_i  (w_i coef_ij = w_j coef_ji).
- * Hestenes & Stiefel 1952; Barrett et al., Templates (1994), Fig. 2.5. */
+/* cg.h - conjugate gradients with Jacobi's preconditioner in a weighted inner product, for
+ * operators (A p)_i = diag_i p_i - sum_j coef_ij p_j that are symmetric and positive definite in
+ * <a, b> = sum_i w_i a_i b_i  (w_i coef_ij = w_j coef_ji). Hestenes & Stiefel 1952; Barrett et al.,
+ * Templates (1994), Fig. 2.5. */
 #ifndef CG_H
 #define CG_H
 #include "../neighbours/pairs.h"
@@ -12,23 +12,23 @@ extern "C" {
 
 struct cg {
   int n;
-  struct pairs rows;    /* the list that coef belongs to; its positions are not read */
-  const real *coef;     /* off-diagonal coefficients [slots] */
-  const real *diag;     /* > 0 [n] */
-  const real *weight;   /* of the inner product, > 0 [n] */
-  const real *b;        /* right-hand side [n] */
-  real *x;              /* start and solution [n] */
-  real *r, *d, *q;      /* work: residual, direction, A d [n] each */
-  real step, beta;      /* of the current iteration */
+  struct pairs rows;  /* the list that coef belongs to; its positions are not read */
+  const real *coef;   /* off-diagonal coefficients [slots] */
+  const real *diag;   /* > 0 [n] */
+  const real *weight; /* of the inner product, > 0 [n] */
+  const real *b;      /* right-hand side [n] */
+  real *x;            /* start and solution [n] */
+  real *r, *d, *q;    /* work: residual, direction, A d [n] each */
+  real step, beta;    /* of the current iteration */
 };
 
 struct cg_result {
   int iterations, converged;
-  double residual;      /* ||b - A x|| / ||b|| in the weighted norm, by the recurrence */
+  double residual; /* ||b - A x|| / ||b|| in the weighted norm, by the recurrence */
 };
 
-/* Iterate from x until residual <= tolerance or max_iterations (at least one iteration unless b = 0; exactly
- * max_iterations where tolerance = 0). b = 0 gives x = 0. */
+/* Iterate from x until residual <= tolerance or max_iterations (at least one iteration unless b =
+ * 0; exactly max_iterations where tolerance = 0). b = 0 gives x = 0. */
 struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations);
 
 #ifdef __cplusplus

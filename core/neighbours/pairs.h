@@ -1,6 +1,6 @@
-/* pairs.h - walking the pairs of a particle. A pair list from set A to set B is CSR whose rows start at multiples of
- * LANES; the slots past a row's end hold valid indices and are masked in W and gradW. A set paired with itself lists
- * i itself too (r = 0), as the sums in the papers do. */
+/* pairs.h - walking the pairs of a particle. A pair list from set A to set B is CSR whose rows
+ * start at multiples of LANES; the slots past a row's end hold valid indices and are masked in W
+ * and gradW. A set paired with itself lists i itself too (r = 0), as the sums in the papers do. */
 #ifndef PAIRS_H
 #define PAIRS_H
 #include "../sph/kernels.h"
@@ -10,12 +10,13 @@
 #endif
 
 struct pairs {
-  const int *first, *last; /* row i of A: slots first[i] .. last[i]-1                     [rows], [rows] */
-  const int *list;         /* index in B                                                  [slots] */
-  const vec *xi, *xj;      /* positions of A and of B                                     [m] */
+  const int *first,
+    *last;         /* row i of A: slots first[i] .. last[i]-1                     [rows], [rows] */
+  const int *list; /* index in B                                                  [slots] */
+  const vec *xi, *xj; /* positions of A and of B                                     [m] */
   struct kernel kernel;
-  vec period;              /* side of a periodic domain, 0 where it is open               [m] */
-  int periodic;            /* is any side periodic? */
+  vec period;   /* side of a periodic domain, 0 where it is open               [m] */
+  int periodic; /* is any side periodic? */
   int rows, slots;
 };
 
@@ -32,7 +33,11 @@ struct packet {
 STAGE real of(const real *a, const packet &ij) { return a[*ij.j]; }
 STAGE vec of(const vec *a, const packet &ij) { return a[*ij.j]; }
 STAGE vec difference(vec a, vec b) { return sub(a, b); }
-STAGE real only(const packet &ij, real a) { (void)ij; return a; }
+STAGE real only(const packet &ij, real a)
+{
+  (void)ij;
+  return a;
+}
 STAGE real only_below(const packet &ij, int n, real a) { return *ij.j < n ? a : 0; }
 STAGE real nearest_image(real x, real period) { return x - period * rint(x / period); }
 STAGE void keep(real *a, const packet &ij, real value) { a[ij.k] = value; }
@@ -47,7 +52,8 @@ STAGE lanes of_real(const real *a, struct packet ij)
 #undef ONE
 }
 
-/* The transpose of LANES consecutive vec; 3-D reads one real past each vec: arrays have a spare element at their end. */
+/* The transpose of LANES consecutive vec; 3-D reads one real past each vec: arrays have a spare
+ * element at their end. */
 STAGE vecs of_vec(const vec *a, struct packet ij)
 {
   const int *j = ij.j;
@@ -102,7 +108,8 @@ STAGE lanes nearest_image(lanes x, real period)
   for (int l = 0; l < LANES; l++) x[l] -= period * rint(x[l] / period);
   return x;
 }
-/* One real per slot of a pair list: written whole packets at a time, since rows start at multiples of LANES. */
+/* One real per slot of a pair list: written whole packets at a time, since rows start at multiples
+ * of LANES. */
 STAGE void keep(real *a, struct packet ij, lanes value) { *(lanes *)(a + ij.k) = value; }
 STAGE lanes kept(const real *a, struct packet ij) { return *(const lanes *)(a + ij.k); }
 
@@ -147,7 +154,7 @@ STAGE int packet_get_bare(const struct pairs *list, struct packet *ij)
 #define for_slots(pairs, i, ij) \
   for (struct packet ij = packet_first(pairs, i); packet_get_bare(pairs, &ij); ij.k += LANES)
 /* the neighbours of a particle in the list that the runner keeps in every state */
-#define for_neighbours(s, i, ij) for_pairs(&(s)->nb, i, ij)
+#define for_neighbours(s, i, ij) for_pairs (&(s)->nb, i, ij)
 
 /* W(r_ij) */
 STAGE lanes W(const struct pairs *nb, struct packet ij)
@@ -156,14 +163,14 @@ STAGE lanes W(const struct pairs *nb, struct packet ij)
   const lanes u = at_least(1 - ij.r * k.inv_R, 0), u2 = u * u;
   lanes f;
   switch (k.kind) {
-    case KERNEL_CUBIC: {
-      const lanes v = at_least(u - (real)0.5, 0);
-      f = u2 * u - 4 * v * v * v;
-      break;
-    }
-    case KERNEL_SPIKY: f = u2 * u; break;
-    case KERNEL_WENDLAND2: f = u2 * u2 * (5 - 4 * u); break;
-    default: f = u2 * u2 * u2 * ((real)56 / 3 + u * ((real)-88 / 3 + (real)35 / 3 * u));
+  case KERNEL_CUBIC: {
+    const lanes v = at_least(u - (real)0.5, 0);
+    f = u2 * u - 4 * v * v * v;
+    break;
+  }
+  case KERNEL_SPIKY: f = u2 * u; break;
+  case KERNEL_WENDLAND2: f = u2 * u2 * (5 - 4 * u); break;
+  default: f = u2 * u2 * u2 * ((real)56 / 3 + u * ((real)-88 / 3 + (real)35 / 3 * u));
   }
   return only(ij, k.w * f);
 }
@@ -175,14 +182,14 @@ STAGE lanes slope(const struct pairs *nb, struct packet ij)
   const lanes u = at_least(1 - ij.r * k.inv_R, 0), u2 = u * u;
   lanes g;
   switch (k.kind) {
-    case KERNEL_CUBIC: {
-      const lanes v = at_least(u - (real)0.5, 0);
-      g = 3 * u2 - 12 * v * v;
-      break;
-    }
-    case KERNEL_SPIKY: g = 3 * u2; break;
-    case KERNEL_WENDLAND2: g = 20 * (1 - u) * u2 * u; break;
-    default: g = (real)56 / 3 * (1 - u) * u2 * u2 * u * (6 - 5 * u);
+  case KERNEL_CUBIC: {
+    const lanes v = at_least(u - (real)0.5, 0);
+    g = 3 * u2 - 12 * v * v;
+    break;
+  }
+  case KERNEL_SPIKY: g = 3 * u2; break;
+  case KERNEL_WENDLAND2: g = 20 * (1 - u) * u2 * u; break;
+  default: g = (real)56 / 3 * (1 - u) * u2 * u2 * u * (6 - 5 * u);
   }
   return only(ij, k.dw * g);
 }

@@ -1,6 +1,6 @@
 /* particles.h - the particle store as solvers see it: a view, copied by value into kernels.
- * Indices 0 .. n-1 are fluid particles, n .. n_all-1 wall particles; a scene without walls has n_all = n. Every array has a
- * spare element at its end. A field that nobody asked for is NULL. */
+ * Indices 0 .. n-1 are fluid particles, n .. n_all-1 wall particles; a scene without walls has
+ * n_all = n. Every array has a spare element at its end. A field that nobody asked for is NULL. */
 #ifndef PARTICLES_H
 #define PARTICLES_H
 #include "../sph/sph.h"
@@ -20,8 +20,8 @@ enum field_number {
 };
 #define HAS(name) (1u << FIELD_##name)
 
-/* Where a field lives and how long (see fields.def); VIRTUAL: a solver's own second set of particles,
- * sized by the solver. */
+/* Where a field lives and how long (see fields.def); VIRTUAL: a solver's own second set of
+ * particles, sized by the solver. */
 enum field_where { FLUID, ALL, WALL, VIRTUAL, NUM_WHERE };
 enum field_life { KEPT, STEP };
 

@@ -1,8 +1,8 @@
 /* lanes.h - a value per pair: LANES neighbours at a time on the CPU, one on the GPU.
  *
- * An author of stages needs: `lanes` and `vecs` (a real or vec per pair), + - * / on lanes, dot, add, scale, sum(),
- * at_least(), where(). Loads by neighbour are in pairs.h. Lanes past the end of a row are masked in W and gradW, so every
- * term of a pair sum must contain one of them. */
+ * An author of stages needs: `lanes` and `vecs` (a real or vec per pair), + - * / on lanes, dot,
+ * add, scale, sum(), at_least(), where(). Loads by neighbour are in pairs.h. Lanes past the end of
+ * a row are masked in W and gradW, so every term of a pair sum must contain one of them. */
 #ifndef LANES_H
 #define LANES_H
 #include "sph.h"

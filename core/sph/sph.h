@@ -1,11 +1,12 @@
-/* sph.h - the words of the dual dialect: what C17 and CUDA C++20 both read. DIM and REAL come from the variant. */
+/* sph.h - the words of the dual dialect: what C17 and CUDA C++20 both read. DIM and REAL come from
+ * the variant. */
 #ifndef SPH_H
 #define SPH_H
 #ifdef __cplusplus
 #include <cmath>
 #else
 #include <tgmath.h> /* sqrt(real) is sqrtf in the f32 build */
-#undef I /* of complex.h; here I is a virtual particle */
+#undef I            /* of complex.h; here I is a virtual particle */
 #endif
 #include <stddef.h>
 #ifndef DIM

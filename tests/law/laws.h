@@ -48,7 +48,8 @@ static inline real swirl_speed(vec x, int d)
   return d == 0 ? 2 * x.c[1] : d == 1 ? -2 * x.c[0] : 0;
 }
 
-/* A block of SIDE^DIM particles about the origin, turning at 2 rad/s, displaced by jitter (dx), plus a velocity. */
+/* A block of SIDE^DIM particles about the origin, turning at 2 rad/s, displaced by jitter (dx),
+ * plus a velocity. */
 static inline struct scene block(double gravity, double jitter, double spin, vec velocity)
 {
   struct scene s = empty_scene(gravity);
@@ -91,7 +92,8 @@ static inline struct outcome outcome_of(const struct solver *solver, struct scen
   double values[64];
   for (int k = 0; k < solver->num_params; k++) {
     values[k] = solver->params[k].initial;
-    /* a density term measured off the particles sees the ripple of the kernel sum: not part of these laws */
+    /* a density term measured off the particles sees the ripple of the kernel sum: not part of
+     * these laws */
     if (strcmp(solver->params[k].name, "kappa") == 0) values[k] = 0;
   }
   const status made = run_create(solver, values, scene, 0, &run);
@@ -102,7 +104,8 @@ static inline struct outcome outcome_of(const struct solver *solver, struct scen
   }
   struct snapshot now;
   assert_int_equal(run_snapshot(run, &now), OK);
-  struct outcome out = {now.n, malloc(sizeof(vec) * (size_t)(now.n + 1)), malloc(sizeof(vec) * (size_t)(now.n + 1))};
+  struct outcome out = {now.n, malloc(sizeof(vec) * (size_t)(now.n + 1)),
+                        malloc(sizeof(vec) * (size_t)(now.n + 1))};
   for (int i = 0; i < now.n; i++) {
     out.x[now.id[i]] = now.x[i];
     out.v[now.id[i]] = now.v[i];
@@ -137,11 +140,11 @@ static inline double largest_difference(const vec *a, const vec *b, int n)
 }
 
 /* Every solver that can do `asks`; the test states what it skips. */
-#define FOR_SOLVERS(solver, asks)                                                          \
-  for (int k_ = 0; k_ < num_solvers; k_++)                                                 \
-    for (const struct solver *solver = solvers[k_]; solver; solver = NULL)                 \
-      if (solver_lacks(solver, (asks) | (DIM == 2 ? CAN(2D) : CAN(3D))))                   \
-        print_message("%s is skipped: it cannot %s\n", solver->name,                       \
-                      solver_lacks(solver, (asks) | (DIM == 2 ? CAN(2D) : CAN(3D))));      \
+#define FOR_SOLVERS(solver, asks)                                                     \
+  for (int k_ = 0; k_ < num_solvers; k_++)                                            \
+    for (const struct solver *solver = solvers[k_]; solver; solver = NULL)            \
+      if (solver_lacks(solver, (asks) | (DIM == 2 ? CAN(2D) : CAN(3D))))              \
+        print_message("%s is skipped: it cannot %s\n", solver->name,                  \
+                      solver_lacks(solver, (asks) | (DIM == 2 ? CAN(2D) : CAN(3D)))); \
       else
 #endif

@@ -7,12 +7,14 @@
 static void rest_stays_at_rest(void **unused)
 {
   (void)unused;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene scene = block(0, 0, 0, zero());
     struct outcome out = outcome_of(solver, &scene, 5);
     double fastest = 0;
     for (int i = 0; i < out.n; i++) fastest = fmax(fastest, norm_of(out.v[i]));
-    if (fastest > ROUNDING * DX / DT) fail_msg("%s: at rest, but a particle moves at %g m/s", solver->name, fastest);
+    if (fastest > ROUNDING * DX / DT)
+      fail_msg("%s: at rest, but a particle moves at %g m/s", solver->name, fastest);
     outcome_free(&out);
   }
 }
@@ -22,7 +24,8 @@ static void free_fall_is_exact(void **unused)
 {
   (void)unused;
   const int steps = 10;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE) | CAN(GRAVITY)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE) | CAN(GRAVITY))
+  {
     struct scene scene = block(9.81, 0, 0, zero()), start = copy_of(&scene);
     struct outcome out = outcome_of(solver, &scene, steps);
     vec fall = zero();
@@ -30,13 +33,15 @@ static void free_fall_is_exact(void **unused)
     for (int i = 0; i < out.n; i++) {
       const double wrong = norm_of(sub(out.v[i], fall));
       if (wrong > ROUNDING * 9.81 * steps * DT)
-        fail_msg("%s: particle %d falls with a velocity that is wrong by %g m/s", solver->name, i, wrong);
+        fail_msg("%s: particle %d falls with a velocity that is wrong by %g m/s", solver->name, i,
+                 wrong);
       const vec moved = sub(out.x[i], start.x[i]), moved0 = sub(out.x[0], start.x[0]);
       assert_true(norm_of(sub(moved, moved0)) < ROUNDING * DX);
     }
     const double way = -(double)sub(out.x[0], start.x[0]).c[DIM - 1], unit = 9.81 * DT * DT;
     /* symplectic Euler: the sum of the velocities before or after each kick */
-    assert_true(way > (steps * (steps - 1) / 2 - 0.01) * unit && way < (steps * (steps + 1) / 2 + 0.01) * unit);
+    assert_true(way > (steps * (steps - 1) / 2 - 0.01) * unit &&
+                way < (steps * (steps + 1) / 2 + 0.01) * unit);
     outcome_free(&out);
     scene_free(&start);
   }
@@ -45,7 +50,8 @@ static void free_fall_is_exact(void **unused)
 static void lonely_particle_goes_straight(void **unused)
 {
   (void)unused;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene scene = empty_scene(0);
     vec x = zero(), v = zero();
     v.c[0] = (real)0.25;
@@ -59,14 +65,16 @@ static void lonely_particle_goes_straight(void **unused)
   }
 }
 
-/* A frame that moves by whole spacings per step (so that a world-fixed grid falls on itself) sees the same. */
+/* A frame that moves by whole spacings per step (so that a world-fixed grid falls on itself) sees
+ * the same. */
 static void galilean(void **unused)
 {
   (void)unused;
   const int steps = 4;
   vec drift = zero();
   drift.c[0] = (real)(DX / DT);
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene still = block(0, 0.05, 1, zero()), moving = copy_of(&still);
     for (int i = 0; i < moving.n; i++) moving.v[i] = plus(moving.v[i], drift);
     struct outcome a = outcome_of(solver, &still, steps), b = outcome_of(solver, &moving, steps);
@@ -75,7 +83,8 @@ static void galilean(void **unused)
       b.x[i] = madd(b.x[i], (real)(-steps * DT), drift);
     }
     const double wrong = largest_difference(a.v, b.v, a.n);
-    if (wrong > 50 * ROUNDING) fail_msg("%s: a moving frame sees velocities that differ by %g m/s", solver->name, wrong);
+    if (wrong > 50 * ROUNDING)
+      fail_msg("%s: a moving frame sees velocities that differ by %g m/s", solver->name, wrong);
     outcome_free(&a);
     outcome_free(&b);
   }
@@ -93,7 +102,8 @@ static vec swap_axes(vec a)
 static void mirror(void **unused)
 {
   (void)unused;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene scene = block(0, 0.05, 1, zero()), mirrored = copy_of(&scene);
     for (int i = 0; i < mirrored.n; i++) {
       mirrored.x[i] = swap_axes(mirrored.x[i]);
@@ -102,7 +112,8 @@ static void mirror(void **unused)
     struct outcome a = outcome_of(solver, &scene, 4), b = outcome_of(solver, &mirrored, 4);
     for (int i = 0; i < b.n; i++) b.v[i] = swap_axes(b.v[i]);
     const double wrong = largest_difference(a.v, b.v, a.n);
-    if (wrong > 50 * ROUNDING) fail_msg("%s: the mirror image differs by %g m/s", solver->name, wrong);
+    if (wrong > 50 * ROUNDING)
+      fail_msg("%s: the mirror image differs by %g m/s", solver->name, wrong);
     outcome_free(&a);
     outcome_free(&b);
   }
@@ -112,7 +123,8 @@ static void mirror(void **unused)
 static void relabelling(void **unused)
 {
   (void)unused;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene scene = block(0, 0.05, 1, zero()), turned = copy_of(&scene);
     const int n = scene.n;
     for (int i = 0; i < n; i++) {
@@ -122,18 +134,20 @@ static void relabelling(void **unused)
     struct outcome a = outcome_of(solver, &scene, 4), b = outcome_of(solver, &turned, 4);
     double wrong = 0;
     for (int i = 0; i < n; i++) wrong = fmax(wrong, norm_of(sub(a.v[i], b.v[n - 1 - i])));
-    if (wrong > 50 * ROUNDING) fail_msg("%s: other labels change velocities by %g m/s", solver->name, wrong);
+    if (wrong > 50 * ROUNDING)
+      fail_msg("%s: other labels change velocities by %g m/s", solver->name, wrong);
     outcome_free(&a);
     outcome_free(&b);
   }
 }
 
-/* Linear momentum: pairwise symmetric methods keep it to rounding; others state that they do not, and lose less than a
- * tenth of what they exchange. */
+/* Linear momentum: pairwise symmetric methods keep it to rounding; others state that they do not,
+ * and lose less than a tenth of what they exchange. */
 static void momentum(void **unused)
 {
   (void)unused;
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE))
+  {
     struct scene scene = block(0, 0.15, 1, zero()), start = copy_of(&scene);
     struct outcome out = outcome_of(solver, &scene, 4);
     vec lost = zero();
@@ -157,7 +171,8 @@ static void bits(void **unused)
 {
   (void)unused;
   const int threads[] = {1, 2, 4, 2}, reversed[] = {0, 0, 0, 1};
-  FOR_SOLVERS(solver, CAN(FREE_SURFACE) | CAN(GRAVITY)) {
+  FOR_SOLVERS(solver, CAN(FREE_SURFACE) | CAN(GRAVITY))
+  {
     struct outcome first = {0};
     for (int k = 0; k < 4; k++) {
       omp_set_num_threads(threads[k]);
@@ -168,8 +183,10 @@ static void bits(void **unused)
         first = out;
         continue;
       }
-      if (memcmp(first.x, out.x, sizeof(vec) * (size_t)out.n) || memcmp(first.v, out.v, sizeof(vec) * (size_t)out.n))
-        fail_msg("%s: other bits with %d threads%s", solver->name, threads[k], reversed[k] ? ", reversed" : "");
+      if (memcmp(first.x, out.x, sizeof(vec) * (size_t)out.n) ||
+          memcmp(first.v, out.v, sizeof(vec) * (size_t)out.n))
+        fail_msg("%s: other bits with %d threads%s", solver->name, threads[k],
+                 reversed[k] ? ", reversed" : "");
       outcome_free(&out);
     }
     outcome_free(&first);
@@ -181,9 +198,14 @@ static void bits(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rest_stays_at_rest), cmocka_unit_test(free_fall_is_exact),
-      cmocka_unit_test(lonely_particle_goes_straight), cmocka_unit_test(galilean), cmocka_unit_test(mirror),
-      cmocka_unit_test(relabelling), cmocka_unit_test(momentum), cmocka_unit_test(bits),
+    cmocka_unit_test(rest_stays_at_rest),
+    cmocka_unit_test(free_fall_is_exact),
+    cmocka_unit_test(lonely_particle_goes_straight),
+    cmocka_unit_test(galilean),
+    cmocka_unit_test(mirror),
+    cmocka_unit_test(relabelling),
+    cmocka_unit_test(momentum),
+    cmocka_unit_test(bits),
   };
   return cmocka_run_group_tests_name("laws " SPHBENCH_VARIANT, tests, NULL, NULL);
 }

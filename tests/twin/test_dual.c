@@ -1,11 +1,13 @@
-/* The dual-particle strategies against their formulas by double loops (Liu et al. 2024), with the matrix written out. */
+/* The dual-particle strategies against their formulas by double loops (Liu et al. 2024), with the
+ * matrix written out. */
 #include "twin_solvers.h"
 
 enum { SA, SB, SC };
 enum { MOST_VIRTUAL = 3000 };
 
 struct choices {
-  int strategy, saturated, adjoint, real_density, iterations; /* iterations of CG; 0: solve by elimination */
+  int strategy, saturated, adjoint, real_density,
+    iterations; /* iterations of CG; 0: solve by elimination */
   double kappa;
 };
 
@@ -24,9 +26,18 @@ static double between(const double *a, const double *b)
   for (int d = 0; d < DIM; d++) r2 += (a[d] - b[d]) * (a[d] - b[d]);
   return sqrt(r2);
 }
-static double W_at(const struct cloud *c, double r) { return (double)kernel_W(&c->kernel, (real)r, DIM); }
-static double dW_at(const struct cloud *c, double r) { return (double)kernel_dW(&c->kernel, (real)r, DIM); }
-static double volume(const struct cloud *c, int j) { return j < c->n ? c->mass / c->rho[j] : c->mass / c->rho0; }
+static double W_at(const struct cloud *c, double r)
+{
+  return (double)kernel_W(&c->kernel, (real)r, DIM);
+}
+static double dW_at(const struct cloud *c, double r)
+{
+  return (double)kernel_dW(&c->kernel, (real)r, DIM);
+}
+static double volume(const struct cloud *c, int j)
+{
+  return j < c->n ? c->mass / c->rho[j] : c->mass / c->rho0;
+}
 
 /* S.B: five PBF iterations on copies of the fluid */
 static void even_out(const struct cloud *c)
@@ -57,7 +68,8 @@ static void even_out(const struct cloud *c)
       for (int j = 0; j < c->n_all; j++) {
         const double r = between(s.X[i], s.X[j]);
         for (int d = 0; d < DIM && r > 0 && close[i][j]; d++)
-          shift[i][d] += (lambda[i] + lambda[j]) * c->mass / c->rho0 * dW_at(c, r) * (s.X[i][d] - s.X[j][d]) / r;
+          shift[i][d] +=
+            (lambda[i] + lambda[j]) * c->mass / c->rho0 * dW_at(c, r) * (s.X[i][d] - s.X[j][d]) / r;
       }
     for (int i = 0; i < c->n; i++)
       for (int d = 0; d < DIM; d++) s.X[i][d] += shift[i][d];
@@ -258,12 +270,15 @@ static void twin_step(struct cloud *c, const struct choices *o)
   generate(c, o);
   for (int I = 0; I < s.n; I++) source(c, o, I);
   matrix(c);
-  if (o->iterations) conjugate_gradients(o->iterations);
-  else eliminate();
+  if (o->iterations)
+    conjugate_gradients(o->iterations);
+  else
+    eliminate();
   correct(c, o);
 }
 
-static const struct solver *const strategies[] = {&solver_dual_sa, &solver_dual_sb, &solver_dual_sc};
+static const struct solver *const strategies[] = {&solver_dual_sa, &solver_dual_sb,
+                                                  &solver_dual_sc};
 
 static void compare(const struct choices *o, int walls, unsigned long long seed)
 {
@@ -271,9 +286,13 @@ static void compare(const struct choices *o, int walls, unsigned long long seed)
   cloud_make(&a, DIM == 2 ? 11 : 6, walls, KERNEL_CUBIC, seed);
   a.xsph = (double)(real)0.05;
   b = a;
-  const struct setting settings[] = {{"volume", o->saturated}, {"gradient", o->adjoint}, {"kappa", o->kappa}, 
-                                     {"tolerance", 1e-14}, {"fixed_iterations", o->iterations},
-                                     {o->strategy == SC ? "density" : NULL, o->real_density}, {NULL, 0}};
+  const struct setting settings[] = {{"volume", o->saturated},
+                                     {"gradient", o->adjoint},
+                                     {"kappa", o->kappa},
+                                     {"tolerance", 1e-14},
+                                     {"fixed_iterations", o->iterations},
+                                     {o->strategy == SC ? "density" : NULL, o->real_density},
+                                     {NULL, 0}};
   cloud_run(&a, strategies[o->strategy], settings, 1);
   twin_step(&b, o);
   assert_same_cloud(&a, &b, o->iterations ? 1 : 2);
@@ -287,13 +306,15 @@ static void one_step(void **unused)
     for (int form = 0; form < 4; form++)
       for (int walls = 0; walls < 2; walls++) {
         const struct choices o = {strategy, form & 1, form >> 1, form & 1, 4, (double)(real)0.1};
-        print_message("%s, form %d, %s\n", strategies[strategy]->name, form, walls ? "walls" : "free");
+        print_message("%s, form %d, %s\n", strategies[strategy]->name, form,
+                      walls ? "walls" : "free");
         compare(&o, walls, 11 + (unsigned long long)form);
       }
 }
 
 #ifndef REAL_IS_FLOAT
-/* Converged CG against elimination: the weighted inner product solves the printed, unsymmetric system. */
+/* Converged CG against elimination: the weighted inner product solves the printed, unsymmetric
+ * system. */
 static void converged_step(void **unused)
 {
   (void)unused;
@@ -309,9 +330,9 @@ int main(void)
   A = malloc(sizeof(double) * MOST_VIRTUAL * (size_t)MOST_VIRTUAL);
   if (!A) return 77;
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_step),
+    cmocka_unit_test(one_step),
 #ifndef REAL_IS_FLOAT
-      cmocka_unit_test(converged_step),
+    cmocka_unit_test(converged_step),
 #endif
   };
   const int failed = cmocka_run_group_tests_name("dual twin " SPHBENCH_VARIANT, tests, NULL, NULL);
