@@ -1,6 +1,7 @@
 /* The command `sphbench`: carries out what concerns many runs, and starts the variant (backend,
  * dimension, precision) that does one run. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

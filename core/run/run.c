@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../backend/backend.h"
 #include "../base/memory.h"
 
 enum { SPEED_MARGIN = 10 }; /* a particle this many times faster than any energy allows: diverged */
@@ -150,6 +151,12 @@ status run_create(const struct solver *solver, const double *solver_values, stru
                   unsigned asks, struct run **out)
 {
   asks |= scene_asks(scene);
+  const status ready = backend_check();
+  if (ready != OK) {
+    scene_free(scene);
+    *out = NULL;
+    return ready;
+  }
   const char *lacks = solver_lacks(solver, asks);
   struct run *run = lacks ? NULL : calloc(1, sizeof *run);
   *out = run;
@@ -201,6 +208,7 @@ static void check_health(struct run *run)
 
 static status finish_step(struct run *run, status result)
 {
+  TRY(backend_check());
   if (result == ERR_RUN && run->diverged) result = OK;
   run->step++;
   if (result == OK) check_health(run);

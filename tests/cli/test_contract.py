@@ -260,6 +260,10 @@ class Lists(Case):
         for known in ("dual-sc", "dam-break", "gamma_mean", "patch-gallery", "openmp-2d-f64"):
             self.assertIn(known, names)
 
+    def test_a_name_means_one_thing(self):
+        names = [row["name"] for row in self.asked("list") if row["kind"] != "plans"]
+        self.assertEqual(sorted(names), sorted(set(names)))
+
     def test_show(self):
         wanted = {"solvers": {"paper", "doi", "differences", "parameters", "fields", "can"},
                   "scenes": {"source", "parameters", "asks", "dims", "metrics"},

@@ -29,7 +29,7 @@ FLOORS = {
     "core/base": (0, 0),
     "core/sph": (1, 1),
     "core/particles": (1, 1),
-    "core/backend": (1, 1),
+    "core/backend": (2, 1),
     "core/neighbours": (2, 2),
     "core/scene": (2, 2),
     "core/linear": (2, 2),
