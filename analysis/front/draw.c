@@ -1,6 +1,7 @@
 /* gnuplot: once for SVG, once for PNG, on the data files only. */
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "figure.h"
@@ -45,6 +46,14 @@ static status drawing_failed(const struct path *script, const struct path *log)
   return result;
 }
 
+/* Is the picture newer than its data and its scripts? */
+static int is_up_to_date(const struct figure *f, const char *picture, const char *shared)
+{
+  struct stat about;
+  return stat(picture, &about) == 0 && about.st_mtime > folder_newest(f->data.text) &&
+         about.st_mtime > folder_newest(f->folder.text) && about.st_mtime > folder_newest(shared);
+}
+
 static status draw_kind(const struct figure *f, const char *out, const char *kind)
 {
   const char *name = f->recipe->name;
@@ -52,7 +61,9 @@ static status draw_kind(const struct figure *f, const char *out, const char *kin
   const struct path script = path_of("%s/%s.gp", f->folder.text, name);
   const struct path temp = path_of("%s/%s.%s.tmp", f->data.text, name, kind);
   const struct path log = path_of("%s/gnuplot.log", f->data.text);
+  const struct path whole = path_of("%s/%s.%s", out, name, kind);
   char absolute[4096];
+  if (is_up_to_date(f, whole.text, shared.text)) return OK;
   if (!realpath(script.text, absolute))
     return user_error("the figure '%s' has no script '%s'", name, script.text);
   char *set[] = {quoted("kind", kind), quoted("shared", shared.text),
@@ -64,7 +75,6 @@ static status draw_kind(const struct figure *f, const char *out, const char *kin
   for (int k = 0; k < 3; k++) free(set[k]);
   if (result != OK) return result;
   if (exit_code || !path_is_file(temp.text)) return drawing_failed(&script, &log);
-  const struct path whole = path_of("%s/%s.%s", out, name, kind);
   if (rename(temp.text, whole.text)) return status_set(ERR_IO, "cannot write '%s'", whole.text);
   unlink(log.text);
   return OK;

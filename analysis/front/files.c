@@ -135,13 +135,39 @@ status file_begin(struct new_file *file, const char *path)
   return failed;
 }
 
+/* Do both files hold the same? */
+static int same_content(const char *a, const char *b)
+{
+  unsigned long long hash_a = HASH_START, hash_b = HASH_START;
+  struct stat about_a, about_b;
+  return stat(a, &about_a) == 0 && stat(b, &about_b) == 0 && about_a.st_size == about_b.st_size &&
+         hash_file(&hash_a, a) == OK && hash_file(&hash_b, b) == OK && hash_a == hash_b;
+}
+
+time_t folder_newest(const char *folder)
+{
+  struct names names = folder_names(folder);
+  time_t newest = 0;
+  for (int k = 0; k < names.n; k++) {
+    struct stat about;
+    const struct path path = path_of("%s/%s", folder, names.name[k]);
+    if (stat(path.text, &about) == 0 && about.st_mtime > newest) newest = about.st_mtime;
+  }
+  names_free(&names);
+  return newest;
+}
+
 status file_commit(struct new_file *file)
 {
   errno = 0;
   int failed = ferror(file->stream) || fflush(file->stream);
   failed = fclose(file->stream) || failed;
   file->stream = NULL;
-  const status result = failed ? out_path_failed(&file->out, errno) : out_path_commit(&file->out);
+  status result = OK;
+  if (failed)
+    result = out_path_failed(&file->out, errno);
+  else if (!file->out.temp || !same_content(file->out.name, file->out.temp))
+    result = out_path_commit(&file->out);
   out_path_discard(&file->out);
   return result;
 }

@@ -3,6 +3,7 @@
 #define FILES_H
 #include <stddef.h>
 #include <stdio.h>
+#include <time.h>
 #include "../../core/base/status.h"
 #include "../../core/io/out_path.h"
 
@@ -29,8 +30,11 @@ void names_free(struct names *names);
 /* The whole file with a '\0' behind it, to be released by free(). ERR_IO, ERR_MEMORY. */
 status file_read(const char *path, char **text, size_t *size);
 
-/* A file that appears under its name only when it is whole. Writing errors stick to `stream`;
- * file_commit tells of them. ERR_IO. */
+/* When the last of a folder's files was changed; 0 where there is none. */
+time_t folder_newest(const char *folder);
+
+/* A file that appears under its name only when it is whole, and stays untouched where it holds the
+ * same already. Writing errors stick to `stream`; file_commit tells of them. ERR_IO. */
 struct new_file {
   struct out_path out;
   FILE *stream;

@@ -11,7 +11,8 @@ enum { CHAINS = 12, REPEATS = 5, TRIAD = 1 << 24 }; /* three arrays of 128 MB */
 /* a = b + s c; counts the two reads and the write (not the write-allocate). */
 static double triad_bandwidth(void)
 {
-  double *a = malloc(sizeof(double) * TRIAD), *b = malloc(sizeof(double) * TRIAD), *c = malloc(sizeof(double) * TRIAD);
+  double *a = malloc(sizeof(double) * TRIAD), *b = malloc(sizeof(double) * TRIAD),
+         *c = malloc(sizeof(double) * TRIAD);
   double best = 0;
   if (a && b && c) {
 #pragma omp parallel for schedule(static)

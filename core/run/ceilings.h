@@ -5,6 +5,7 @@ struct ceilings {
   double bandwidth; /* bytes per second of a triad over arrays far larger than the caches */
   double flops;     /* multiply-adds in `real` per second, times two */
 };
-/* With as many threads as OpenMP has now. Takes about a second. Zeros when there is no memory for it. */
+/* With as many threads as OpenMP has now. Takes about a second. Zeros when there is no memory for
+ * it. */
 struct ceilings ceilings_measure(void);
 #endif

@@ -9,7 +9,7 @@
 struct setting {
   const struct benchmark *benchmark; /* NULL: from a file */
   struct scene_file *file;
-  void *self;                        /* of the benchmark: its parameters and working state */
+  void *self; /* of the benchmark: its parameters and working state */
   struct scene scene;
   unsigned asks;
 };
@@ -26,15 +26,16 @@ status solver_require(const char *name, const struct solver **solver);
 /* Everything that was resolved from the options; released by plan_free. */
 struct plan {
   const struct solver *solver;
-  double *solver_values;             /* [solver->num_params] */
+  double *solver_values; /* [solver->num_params] */
   struct setting setting;
-  struct fact *parameters;           /* as reported [num_parameters] */
+  struct fact *parameters; /* as reported [num_parameters] */
   int num_parameters;
-  char (*words)[64];                 /* behind the facts */
+  char (*words)[64]; /* behind the facts */
 };
 
-/* Resolve scene, solver and parameters, and fill the scene with particles. Errors: ERR_USER with one sentence. A scene of the
- * other dimension is not an error of the user's: *other_dim says which one it wants (else 0). */
+/* Resolve scene, solver and parameters, and fill the scene with particles. Errors: ERR_USER with
+ * one sentence. A scene of the other dimension is not an error of the user's: *other_dim says which
+ * one it wants (else 0). */
 status plan_make(const struct options *o, struct plan *plan, int *other_dim);
 /* Report the values that the solver has put in place of "auto" when it started. */
 void plan_resolve(struct plan *plan, const struct run *run);
@@ -43,19 +44,21 @@ void plan_free(struct plan *plan);
 /* Samples of metrics over a run, and what each step took. */
 struct record {
   long rows, row_room, steps, step_room;
-  double *sample[NUM_METRICS + 3];   /* time, metrics, iterations, residual [rows] */
-  double *step[3];                   /* time, iterations, residual [steps] */
+  double *sample[NUM_METRICS + 3]; /* time, metrics, iterations, residual [rows] */
+  double *step[3];                 /* time, iterations, residual [steps] */
   long steps_counted, iterations_counted;
   struct measures last;
   struct metrics_start start;
   int has_start;
 };
 enum { SAMPLE_TIME = NUM_METRICS, SAMPLE_ITERATIONS, SAMPLE_RESIDUAL };
-status record_sample(struct record *record, struct run *run, struct setting *setting, struct snapshot *now);
+status record_sample(struct record *record, struct run *run, struct setting *setting,
+                     struct snapshot *now);
 status record_step(struct record *record, const struct run *run);
 void record_free(struct record *record);
 
-/* Replace this process by the executable of the other dimension with the same arguments; returns only on failure. */
+/* Replace this process by the executable of the other dimension with the same arguments; returns
+ * only on failure. */
 status switch_dimension(const struct options *o, int dim);
 
 /* The verbs. Each returns a status; the sentence of an error is in status_sentence. */

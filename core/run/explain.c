@@ -9,8 +9,8 @@ static void explain_fields(const struct run *run)
   printf("fields allocated (bytes per fluid particle):\n");
   for (int k = 0; k < run->store.num_fields; k++) {
     const struct store_field *f = &run->store.field[k];
-    printf("  %-10s %7.1f  %s [%s]%s\n", f->row.name, (double)f->capacity / n, f->row.meaning, f->row.unit,
-           f->row.life == KEPT ? ", sorted" : "");
+    printf("  %-10s %7.1f  %s [%s]%s\n", f->row.name, (double)f->capacity / n, f->row.meaning,
+           f->row.unit, f->row.life == KEPT ? ", sorted" : "");
   }
   printf("fields left out:");
   int left = 0;
@@ -29,9 +29,11 @@ static void explain_memory(const struct run *run)
 {
   const double n = run->view->p.n > 0 ? run->view->p.n : 1;
   const struct pair_list *nb = &run->neighbours;
-  printf("bytes per particle: %.1f in all, %.1f of them fields and the room to sort them, %.1f the pair list",
-         run_bytes_per_particle(run), (double)store_bytes(&run->store) / n,
-         sizeof(int) * (2.0 * nb->row_capacity + nb->slot_capacity) / n);
+  printf(
+    "bytes per particle: %.1f in all, %.1f of them fields and the room to sort them, %.1f the "
+    "pair list",
+    run_bytes_per_particle(run), (double)store_bytes(&run->store) / n,
+    sizeof(int) * (2.0 * nb->row_capacity + nb->slot_capacity) / n);
   if (run->view->p.n > 0 && nb->pairs.slots > 0)
     printf(" (%.1f slots per particle)", (double)nb->pairs.slots / n);
   printf("\n");
@@ -45,7 +47,8 @@ static void explain_features(const struct run *run)
     const char *name;
   } abilities[] = {ABILITY_LIST(A)};
 #undef A
-  const unsigned asked = scene_asks(&run->scene), features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC);
+  const unsigned asked = scene_asks(&run->scene),
+                 features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC);
   printf("features absent:");
   int absent = 0;
   for (int k = 0; k < NUM_ABILITIES; k++)

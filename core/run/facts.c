@@ -5,7 +5,8 @@
 
 #include "../scene/scene_file.h"
 
-/* Does this scene report the metric? The general ones always, a scene's own only if it measures them. */
+/* Does this scene report the metric? The general ones always, a scene's own only if it measures
+ * them. */
 static int reported(const struct plan *plan, int metric)
 {
   if (metric < NUM_GENERAL_METRICS) return 1;
@@ -13,7 +14,8 @@ static int reported(const struct plan *plan, int metric)
   return b && (b->measures[metric / 32] >> (metric % 32) & 1u);
 }
 
-void facts_start(struct facts *f, const struct options *o, const struct plan *plan, const struct run *run, int threads)
+void facts_start(struct facts *f, const struct options *o, const struct plan *plan,
+                 const struct run *run, int threads)
 {
   memset(f, 0, sizeof *f);
   provenance_fill(&f->provenance, threads, o->argc, (const char *const *)o->argv);
@@ -30,13 +32,15 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
   f->run.residual_last = NAN;
 }
 
-static void add_series(struct facts *f, const char *name, const char *unit, const char *about, const double *values)
+static void add_series(struct facts *f, const char *name, const char *unit, const char *about,
+                       const double *values)
 {
   const int k = f->run.series.num_columns++;
   f->series[k] = (struct fact_column){name, unit, about, values};
 }
 
-void facts_update(struct facts *f, const struct plan *plan, const struct run *run, const struct record *r)
+void facts_update(struct facts *f, const struct plan *plan, const struct run *run,
+                  const struct record *r)
 {
   f->run.steps = run->step;
   f->run.time_end = run->time;
@@ -45,8 +49,10 @@ void facts_update(struct facts *f, const struct plan *plan, const struct run *ru
   f->run.series.rows = r->rows;
   add_series(f, "time", "s", "simulated time", r->sample[SAMPLE_TIME]);
   for (int k = 0; k < NUM_METRICS; k++)
-    if (reported(plan, k)) add_series(f, metric_names[k], metric_units[k], metric_about[k], r->sample[k]);
-  add_series(f, "iterations", "1", "mean per step since the sample before", r->sample[SAMPLE_ITERATIONS]);
+    if (reported(plan, k))
+      add_series(f, metric_names[k], metric_units[k], metric_about[k], r->sample[k]);
+  add_series(f, "iterations", "1", "mean per step since the sample before",
+             r->sample[SAMPLE_ITERATIONS]);
   add_series(f, "residual", "1", "relative residual of the last step", r->sample[SAMPLE_RESIDUAL]);
   static const char *const names[3][3] = {{"time", "s", "simulated time"},
                                           {"iterations", "1", "iterations of the step"},
@@ -78,13 +84,14 @@ static void end_memory(struct facts *f, const struct run *run)
   f->run.memory.fields = f->fields;
   for (int k = 0; k < run->store.num_fields; k++) {
     const struct store_field *field = &run->store.field[k];
-    f->fields[k] = (struct fact){field->row.name, "B", field->row.meaning, (double)field->capacity / n, NULL};
+    f->fields[k] =
+      (struct fact){field->row.name, "B", field->row.meaning, (double)field->capacity / n, NULL};
   }
   f->run.memory.num_fields = run->store.num_fields;
 }
 
-void facts_end(struct facts *f, const struct plan *plan, const struct run *run, const struct record *r,
-               enum run_status end, const char *reason, double seconds)
+void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
+               const struct record *r, enum run_status end, const char *reason, double seconds)
 {
   facts_update(f, plan, run, r);
   f->run.status = end;
@@ -94,17 +101,18 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run, 
   for (int k = 0; k < NUM_METRICS; k++)
     if (reported(plan, k))
       f->metrics[f->run.num_metrics++] =
-          (struct fact){metric_names[k], metric_units[k], metric_about[k], r->last.value[k], NULL};
+        (struct fact){metric_names[k], metric_units[k], metric_about[k], r->last.value[k], NULL};
   double phase[NUM_PHASES];
   clock_phases(phase);
   for (int k = 0; k < NUM_PHASES; k++)
-    f->phases[k] = (struct fact){clock_phase_name((enum phase)k), "s", clock_phase_about((enum phase)k), phase[k], NULL};
+    f->phases[k] = (struct fact){clock_phase_name((enum phase)k), "s",
+                                 clock_phase_about((enum phase)k), phase[k], NULL};
   f->run.timing.phases = f->phases;
   f->run.timing.num_phases = NUM_PHASES;
   const double work = seconds - phase[PHASE_METRICS] - phase[PHASE_OUTPUT];
   f->run.timing.total = seconds;
   f->run.timing.per_step = run->step > 0 ? work / (double)run->step : 0;
   f->run.timing.per_iteration =
-      f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
+    f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
   end_memory(f, run);
 }

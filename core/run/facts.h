@@ -12,12 +12,15 @@ struct facts {
 };
 
 /* What is known before the first step. */
-void facts_start(struct facts *f, const struct options *o, const struct plan *plan, const struct run *run, int threads);
+void facts_start(struct facts *f, const struct options *o, const struct plan *plan,
+                 const struct run *run, int threads);
 
 /* The series and counters as they are now. */
-void facts_update(struct facts *f, const struct plan *plan, const struct run *run, const struct record *record);
+void facts_update(struct facts *f, const struct plan *plan, const struct run *run,
+                  const struct record *record);
 
 /* Everything at the end; `seconds` is the wall time of the stepping. */
-void facts_end(struct facts *f, const struct plan *plan, const struct run *run, const struct record *record,
-               enum run_status end, const char *reason, double seconds);
+void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
+               const struct record *record, enum run_status end, const char *reason,
+               double seconds);
 #endif

@@ -11,16 +11,16 @@ static const struct {
   int verbs;
   size_t offset;
 } flags[] = {
-#define O(member, flag, argument, verbs, meaning)                                                  \
+#define O(member, flag, argument, verbs, meaning) \
   {flag, argument, meaning, verbs, offsetof(struct options, member)},
   OPTION_LIST(O)
 #undef O
-#define O(member, flag, verbs, meaning)                                                            \
+#define O(member, flag, verbs, meaning) \
   {flag, NULL, meaning, verbs, offsetof(struct options, member)},
     SWITCH_LIST(O)
 #undef O
-  {"--set", "KEY=VALUE", "a parameter of the solver or the scene (sphbench show NAME)", FOR_RUN,
-   offsetof(struct options, num_sets)},
+      {"--set", "KEY=VALUE", "a parameter of the solver or the scene (sphbench show NAME)", FOR_RUN,
+       offsetof(struct options, num_sets)},
 };
 enum { NUM_FLAGS = sizeof flags / sizeof *flags };
 
@@ -114,7 +114,8 @@ status options_parse(struct options *o, int argc, char **argv)
 static int is_given(const struct options *o, int k)
 {
   const char *member = (const char *)o + flags[k].offset;
-  if (flags[k].argument && strcmp(flags[k].flag, "--set")) return *(const char *const *)member != NULL;
+  if (flags[k].argument && strcmp(flags[k].flag, "--set"))
+    return *(const char *const *)member != NULL;
   return *(const int *)member != 0;
 }
 

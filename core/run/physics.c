@@ -21,20 +21,20 @@ STAGE void fall(const struct view *s, int i) { s->p.v[i] = madd(s->p.v[i], s->dt
 STAGE void density(const struct view *s, int i)
 {
   lanes rho = NO_LANES;
-  for_neighbours(s, i, ij) rho += of(s->p.m, ij) * W(&s->nb, ij);
+  for_neighbours (s, i, ij) rho += of(s->p.m, ij) * W(&s->nb, ij);
   s->p.rho[i] = sum(rho);
 }
 
 STAGE void volume(const struct view *s, int i) { s->p.V[i] = s->p.m[i] / s->p.rho[i]; }
 
-/* XSPH, Monaghan 1989, J. Comput. Phys. 82, Eq. (2.6), as a coefficient per step (Schechter & Bridson 2012):
- *   dv_i = c sum_j V_ij (v_j - v_i) W_ij,   V_ij = 2 V_i V_j / (V_i + V_j) = 2 m / (rho_i + rho_j):
- * symmetric, so momentum is kept; 0 on walls, so that they are free slip. */
+/* XSPH, Monaghan 1989, J. Comput. Phys. 82, Eq. (2.6), as a coefficient per step (Schechter &
+ * Bridson 2012): dv_i = c sum_j V_ij (v_j - v_i) W_ij,   V_ij = 2 V_i V_j / (V_i + V_j) = 2 m /
+ * (rho_i + rho_j): symmetric, so momentum is kept; 0 on walls, so that they are free slip. */
 STAGE void xsph(const struct view *s, int i)
 {
   vecs dv = NO_VECS;
   const real Vi = s->p.V[i];
-  for_neighbours(s, i, ij) {
+  for_neighbours (s, i, ij) {
     const lanes Vj = of(s->p.V, ij);
     dv = add(dv, scale(-2 * Vi * Vj / (Vi + Vj) * W(&s->nb, ij), diff(s->p.v, ij)));
   }

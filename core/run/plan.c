@@ -44,7 +44,8 @@ static status open_setting(const struct options *o, struct setting *set)
 {
   if (!o->name) return user_error("%s needs a scene; 'sphbench list scenes' lists them", o->verb);
   for (int k = 0; k < num_scene_params; k++)
-    *(double *)((char *)&set->scene.common + scene_param_rows[k].offset) = scene_param_rows[k].initial;
+    *(double *)((char *)&set->scene.common + scene_param_rows[k].offset) =
+      scene_param_rows[k].initial;
   set->benchmark = benchmark_find(o->name);
   if (set->benchmark) {
     const struct benchmark *b = set->benchmark;
@@ -84,10 +85,12 @@ static status set_value(struct plan *plan, const char *key, const char *text, co
   int n = 0;
   for (int k = 0; k < num_scene_params && n < 128; k++) names[n++] = scene_param_rows[k].name;
   for (int k = 0; b && k < b->num_params && n < 128; k++) names[n++] = b->params[k].name;
-  for (int k = 0; k < plan->solver->num_params && n < 128; k++) names[n++] = plan->solver->params[k].name;
+  for (int k = 0; k < plan->solver->num_params && n < 128; k++)
+    names[n++] = plan->solver->params[k].name;
   const char *near = nearest_name(key, names, n);
-  return near ? user_error("%s: neither the scene nor the solver has a parameter '%s'; the nearest is '%s'",
-                           where, key, near)
+  return near ? user_error(
+                  "%s: neither the scene nor the solver has a parameter '%s'; the nearest is '%s'",
+                  where, key, near)
               : user_error("%s: neither the scene nor the solver has a parameter '%s'", where, key);
 }
 
@@ -124,7 +127,8 @@ static status report_values(struct plan *plan)
   static const struct param seed = {"seed", 1, 0, 0, "1", "seed of everything random", 0};
   plan->parameters = calloc((size_t)total, sizeof *plan->parameters);
   plan->words = calloc((size_t)total, sizeof *plan->words);
-  if (!plan->parameters || !plan->words) return status_set(ERR_MEMORY, "no memory for the parameters");
+  if (!plan->parameters || !plan->words)
+    return status_set(ERR_MEMORY, "no memory for the parameters");
   for (int k = 0; k < num_scene_params; k++)
     report_value(plan, &scene_param_rows[k],
                  *(const double *)((const char *)&set->scene.common + scene_param_rows[k].offset));
@@ -137,15 +141,19 @@ static status report_values(struct plan *plan)
   return report_value(plan, &seed, (double)set->scene.seed);
 }
 
-/* Which dimension the scene runs in when it is not this executable's; the user's error if none fits --dim. */
+/* Which dimension the scene runs in when it is not this executable's; the user's error if none fits
+ * --dim. */
 static status check_dimension(const struct options *o, const struct setting *set, int *other_dim)
 {
   const unsigned here = DIM == 2 ? CAN(2D) : CAN(3D);
-  const unsigned dims = set->benchmark ? set->benchmark->dims : scene_file_dim(set->file) == 2 ? CAN(2D) : CAN(3D);
+  const unsigned dims = set->benchmark                   ? set->benchmark->dims
+                        : scene_file_dim(set->file) == 2 ? CAN(2D)
+                                                         : CAN(3D);
   *other_dim = 0;
   if (dims & here) return OK;
   if (o->dim)
-    return user_error("--dim: %s found, scene '%s' is %s-D only", o->dim, o->name, DIM == 2 ? "3" : "2");
+    return user_error("--dim: %s found, scene '%s' is %s-D only", o->dim, o->name,
+                      DIM == 2 ? "3" : "2");
   *other_dim = 5 - DIM;
   return OK;
 }
@@ -174,7 +182,8 @@ status plan_make(const struct options *o, struct plan *plan, int *other_dim)
   if (*other_dim) return OK;
   plan->solver_values = calloc((size_t)plan->solver->num_params + 1, sizeof(double));
   if (!plan->solver_values) return status_set(ERR_MEMORY, "no memory for the parameters");
-  for (int k = 0; k < plan->solver->num_params; k++) plan->solver_values[k] = plan->solver->params[k].initial;
+  for (int k = 0; k < plan->solver->num_params; k++)
+    plan->solver_values[k] = plan->solver->params[k].initial;
   TRY(set_values(o, plan));
   TRY(fill_scene(o, &plan->setting));
   return report_values(plan);

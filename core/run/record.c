@@ -30,13 +30,15 @@ status record_sample(struct record *r, struct run *run, struct setting *set, str
     now->start = &r->start;
     for (int k = 0; k < NUM_METRICS; k++) r->last.value[k] = NAN;
     metrics_measure(now, &r->last);
-    if (set->benchmark && set->benchmark->measure) set->benchmark->measure(set->self, now, &r->last);
+    if (set->benchmark && set->benchmark->measure)
+      set->benchmark->measure(set->self, now, &r->last);
     long total = 0;
     for (int k = 0; k < run->num_iterations; k++) total += run->iterations[k].total;
     const long steps = run->step - r->steps_counted;
     for (int k = 0; k < NUM_METRICS; k++) r->sample[k][r->rows] = r->last.value[k];
     r->sample[SAMPLE_TIME][r->rows] = now->time;
-    r->sample[SAMPLE_ITERATIONS][r->rows] = steps > 0 ? (double)(total - r->iterations_counted) / (double)steps : 0;
+    r->sample[SAMPLE_ITERATIONS][r->rows] =
+      steps > 0 ? (double)(total - r->iterations_counted) / (double)steps : 0;
     r->sample[SAMPLE_RESIDUAL][r->rows] = run->step_residual;
     r->steps_counted = run->step;
     r->iterations_counted = total;

@@ -20,8 +20,10 @@ unsigned scene_asks(const struct scene *scene)
   if (scene->common.xsph > 0) asks |= CAN(XSPH);
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
-    if (scene->period.c[d] > 0) asks |= CAN(PERIODIC);
-    else asks |= CAN(FREE_SURFACE);
+    if (scene->period.c[d] > 0)
+      asks |= CAN(PERIODIC);
+    else
+      asks |= CAN(FREE_SURFACE);
   }
   return asks;
 }
@@ -56,7 +58,8 @@ static void upload(struct store *store, const char *name, const void *from, int 
 {
   struct store_field *f = store_find(store, name);
   if (f && n > 0)
-    memory_from_host((char *)f->data + f->row.bytes * (size_t)begin, from, f->row.bytes * (size_t)n);
+    memory_from_host((char *)f->data + f->row.bytes * (size_t)begin, from,
+                     f->row.bytes * (size_t)n);
 }
 
 static status upload_scene(struct run *run)
@@ -134,8 +137,8 @@ static void fill_view(struct run *run)
   v->gravity = run->scene.gravity;
 }
 
-/* Fields and the pair list of a full lattice: what any run needs. A system that promises more memory
- * than it has would end it later, without a sentence. */
+/* Fields and the pair list of a full lattice: what any run needs. A system that promises more
+ * memory than it has would end it later, without a sentence. */
 static status check_memory(const struct run *run)
 {
   const double n = run->view->p.n_all, s = run->scene.common.support;
@@ -144,7 +147,8 @@ static status check_memory(const struct run *run)
   const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
   if (there <= 0 || needed < there) return OK;
   return user_error("%.0f particles with about %.0f neighbours each need %.3g GB, this machine has "
-                    "%.3g GB", n, neighbours, 1e-9 * needed, 1e-9 * there);
+                    "%.3g GB",
+                    n, neighbours, 1e-9 * needed, 1e-9 * there);
 }
 
 status run_create(const struct solver *solver, const double *solver_values, struct scene *scene,
@@ -162,7 +166,8 @@ status run_create(const struct solver *solver, const double *solver_values, stru
   *out = run;
   if (!run) {
     scene_free(scene);
-    if (lacks) return user_error("solver '%s' cannot %s, which the scene asks", solver->name, lacks);
+    if (lacks)
+      return user_error("solver '%s' cannot %s, which the scene asks", solver->name, lacks);
     return status_set(ERR_MEMORY, "no memory for the run");
   }
   run->scene = *scene;

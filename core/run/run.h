@@ -13,24 +13,27 @@ struct iterations {
   const char *what;
   long solves, total, capped; /* capped: solves that hit their limit */
   int last, most;
-  double residual;            /* of the last solve */
+  double residual; /* of the last solve */
 };
 enum { MAX_ITERATIONS = 4 };
 
 struct run {
   const struct solver *solver;
-  void *state;                /* of the solver, begins with VIEW */
-  struct view *view;          /* = state */
-  struct scene scene;         /* as built; owned */
+  void *state;        /* of the solver, begins with VIEW */
+  struct view *view;  /* = state */
+  struct scene scene; /* as built; owned */
   struct store store;
   unsigned needs;
-  double dt, time;            /* [s] */
+  double dt, time; /* [s] */
   long step;
   int dim;
 
   struct cell_set fluid_cells, wall_cells, virtual_cells;
   struct pair_list neighbours, list[MAX_PAIR_LISTS];
-  struct { real *data; size_t capacity; } coefficients[MAX_PAIR_LISTS];
+  struct {
+    real *data;
+    size_t capacity;
+  } coefficients[MAX_PAIR_LISTS];
   int *order;
   int order_capacity;
   unsigned long long *keys;
@@ -40,20 +43,21 @@ struct run {
 
   struct iterations iterations[MAX_ITERATIONS];
   int num_iterations;
-  int step_iterations;        /* of this step, all solves */
+  int step_iterations; /* of this step, all solves */
   double step_residual;
 
   int diverged;
-  int not_finite;             /* the last step left a position or velocity that is none */
+  int not_finite; /* the last step left a position or velocity that is none */
   char reason[256];
-  double speed_limit;         /* [m/s]; 0: none */
+  double speed_limit; /* [m/s]; 0: none */
 };
 
-/* Start `solver` on `scene` (taken over, also on failure) with the solver's parameter values [num_params] (NULL: its
- * defaults); `asks` are abilities beyond what the scene itself shows. Errors: ERR_USER when the solver cannot do the scene
- * (sentence says what), ERR_MEMORY, what the solver's start returns. */
-status run_create(const struct solver *solver, const double *solver_values, struct scene *scene, unsigned asks,
-                  struct run **out);
+/* Start `solver` on `scene` (taken over, also on failure) with the solver's parameter values
+ * [num_params] (NULL: its defaults); `asks` are abilities beyond what the scene itself shows.
+ * Errors: ERR_USER when the solver cannot do the scene (sentence says what), ERR_MEMORY, what the
+ * solver's start returns. */
+status run_create(const struct solver *solver, const double *solver_values, struct scene *scene,
+                  unsigned asks, struct run **out);
 
 /* What the scene asks of a solver, from what it holds: walls, gravity, XSPH, period. */
 unsigned scene_asks(const struct scene *scene);
@@ -67,11 +71,13 @@ status run_step(struct run *run);
 /* One projection of v at fixed x in place of a step. */
 status run_project(struct run *run);
 
-/* A host copy of the run's state, in cell order, for analysis. Valid until snapshot_free. Errors: ERR_MEMORY. */
+/* A host copy of the run's state, in cell order, for analysis. Valid until snapshot_free. Errors:
+ * ERR_MEMORY. */
 status run_snapshot(struct run *run, struct snapshot *out);
 void snapshot_free(struct snapshot *snapshot);
 
-/* Bytes per fluid particle of everything that scales with them: fields, pair lists, coefficients, cells. */
+/* Bytes per fluid particle of everything that scales with them: fields, pair lists, coefficients,
+ * cells. */
 double run_bytes_per_particle(const struct run *run);
 
 void run_free(struct run *run);
@@ -82,7 +88,8 @@ void physics_wrap(struct view *view, vec low, vec period);
 void physics_gravity(struct view *view);
 void physics_density(struct view *view);
 void physics_viscosity(struct view *view);
-/* Sum of |v|^2 + |x|^2 (not finite if any position or velocity is not) and the largest speed [m/s]. */
+/* Sum of |v|^2 + |x|^2 (not finite if any position or velocity is not) and the largest speed [m/s].
+ */
 void physics_health(struct view *view, double *sum, double *fastest);
 
 #ifdef __cplusplus

@@ -15,8 +15,8 @@ static status reserve_order(struct run *run, int n)
   return run->order ? OK : status_set(ERR_MEMORY, "no memory to sort %d particles", n);
 }
 
-/* The grid's corner and size are whole multiples of the support, so that it depends on where the particles are, not on where
- * they were: a restarted run sees the same cells. */
+/* The grid's corner and size are whole multiples of the support, so that it depends on where the
+ * particles are, not on where they were: a restarted run sees the same cells. */
 static void snap(vec *low, vec *high, real cell)
 {
   for (int d = 0; d < DIM; d++) {
@@ -58,7 +58,8 @@ static status sort_walls(struct run *run)
 {
   const int n = run->view->p.n, n_wall = run->view->p.n_all - n;
   TRY(reserve_order(run, n_wall));
-  TRY(particle_search.cell_sort(&run->wall_cells, &run->view->grid, run->view->p.x + n, n_wall, run->order));
+  TRY(particle_search.cell_sort(&run->wall_cells, &run->view->grid, run->view->p.x + n, n_wall,
+                                run->order));
   TRY(store_permute(&run->store, 1u << ALL | 1u << WALL, run->order, n, n_wall));
   return OK;
 }
@@ -67,14 +68,16 @@ static status sort_fluid(struct run *run)
 {
   const int n = run->view->p.n;
   TRY(reserve_order(run, n));
-  TRY(particle_search.cell_sort(&run->fluid_cells, &run->view->grid, run->view->p.x, n, run->order));
+  TRY(
+    particle_search.cell_sort(&run->fluid_cells, &run->view->grid, run->view->p.x, n, run->order));
   TRY(store_permute(&run->store, 1u << FLUID | 1u << ALL, run->order, 0, n));
   run->view->cells = run->fluid_cells.first;
   return OK;
 }
 
 /* The sets that a list may pair with, as the positions are now. */
-static int gather(struct run *run, enum pair_set set, struct cell_set to[2], int offset[2], const vec **x)
+static int gather(struct run *run, enum pair_set set, struct cell_set to[2], int offset[2],
+                  const vec **x)
 {
   struct view *s = run->view;
   run->fluid_cells.x = s->p.x;
@@ -103,7 +106,8 @@ static status build_list(struct run *run, struct pair_list *list, enum pair_set 
   const enum phase before = clock_enter(PHASE_NEIGHBOURS);
   status result = OK;
   for (int k = 0; k < num_from && result == OK; k++)
-    result = particle_search.pairs_build(list, &run->view->grid, &from[k], unused[k], to, offset, num_to);
+    result =
+      particle_search.pairs_build(list, &run->view->grid, &from[k], unused[k], to, offset, num_to);
   clock_enter(before);
   list->pairs.kernel = run->view->nb.kernel;
   list->pairs.xi = xi;
@@ -159,7 +163,8 @@ status run_sort_virtual(struct run *run)
   return result;
 }
 
-status run_pairs(struct run *run, int slot, enum pair_set from, enum pair_set to, struct pairs *list)
+status run_pairs(struct run *run, int slot, enum pair_set from, enum pair_set to,
+                 struct pairs *list)
 {
   return build_list(run, &run->list[slot], from, to, list);
 }

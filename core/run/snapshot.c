@@ -20,7 +20,8 @@ static const struct pairs *build_pairs(const struct snapshot *now)
   cache->fluid.x = now->x;
   cache->walls.x = now->x + now->n;
   const struct cell_set to[2] = {cache->fluid, cache->walls};
-  if (pairs_build(&cache->list, &cache->grid, &cache->fluid, 0, to, offset, n_wall > 0 ? 2 : 1) != OK)
+  if (pairs_build(&cache->list, &cache->grid, &cache->fluid, 0, to, offset, n_wall > 0 ? 2 : 1) !=
+      OK)
     return NULL;
   cache->list.pairs.xi = cache->list.pairs.xj = now->x;
   cache->list.pairs.kernel = kernel_make(KERNEL_CUBIC, (real)now->support, DIM);

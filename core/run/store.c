@@ -5,9 +5,11 @@
 #include "../base/memory.h"
 
 static const struct field public_rows[] = {
-#define FIELD(type, name, where, life, unit, meaning)                                      \
-  {#name, unit, meaning, where, life, FIELD_COMPONENTS(type), sizeof(type),                \
-   offsetof(struct view, p) + offsetof(struct particles, name)},
+#define FIELD(type, name, where, life, unit, meaning) \
+  {#name,        unit,                                \
+   meaning,      where,                               \
+   life,         FIELD_COMPONENTS(type),              \
+   sizeof(type), offsetof(struct view, p) + offsetof(struct particles, name)},
 #include "../particles/fields.def"
 #undef FIELD
 };
@@ -161,7 +163,6 @@ void store_close(struct store *store)
 {
   for (int k = 0; k < store->num_fields; k++)
     memory_give(store->field[k].data, store->field[k].capacity);
-  for (int k = 0; k < MAX_SPARES; k++)
-    memory_give(store->spare[k].data, store->spare[k].capacity);
+  for (int k = 0; k < MAX_SPARES; k++) memory_give(store->spare[k].data, store->spare[k].capacity);
   memset(store, 0, sizeof *store);
 }

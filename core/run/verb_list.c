@@ -26,7 +26,8 @@ static void list_kind(json_t *array, const char *kind)
   if (strcmp(kind, "solvers") == 0)
     for (int k = 0; k < num_solvers; k++) list_one(array, solvers[k]->name, solvers[k]->about);
   else if (strcmp(kind, "scenes") == 0)
-    for (int k = 0; k < num_benchmarks; k++) list_one(array, benchmarks[k]->name, benchmarks[k]->about);
+    for (int k = 0; k < num_benchmarks; k++)
+      list_one(array, benchmarks[k]->name, benchmarks[k]->about);
   else
     for (int k = 0; k < NUM_METRICS; k++) list_one(array, metric_names[k], metric_about[k]);
 }
@@ -43,7 +44,11 @@ status verb_list(const struct options *o)
     list_kind(array, kinds[k]);
   }
   if (array) print_json(array);
-  return known ? OK : user_error("list: '%s' found, allowed is solvers, scenes, metrics, figures, variants or plans", o->name);
+  return known
+           ? OK
+           : user_error(
+               "list: '%s' found, allowed is solvers, scenes, metrics, figures, variants or plans",
+               o->name);
 }
 
 static json_t *params_json(const struct param *p, int n, int is_double, const void *defaults)
@@ -53,9 +58,11 @@ static json_t *params_json(const struct param *p, int n, int is_double, const vo
     char word[64];
     double value = p[k].initial;
     if (defaults && is_double) value = *(const double *)((const char *)defaults + p[k].offset);
-    json_t *row = json_pack("{s:s, s:s, s:s}", "name", p[k].name, "unit", p[k].unit, "meaning", p[k].meaning);
+    json_t *row =
+      json_pack("{s:s, s:s, s:s}", "name", p[k].name, "unit", p[k].unit, "meaning", p[k].meaning);
     const int is_choice = strchr(p[k].unit, '|') != NULL;
-    json_object_set_new(row, "default", is_choice ? json_string(param_text(&p[k], value, word)) : json_real(value));
+    json_object_set_new(row, "default",
+                        is_choice ? json_string(param_text(&p[k], value, word)) : json_real(value));
     if (!is_choice) json_object_set_new(row, "range", json_pack("[f, f]", p[k].low, p[k].high));
     json_array_append_new(array, row);
   }
@@ -67,9 +74,11 @@ static void print_params(const char *title, const struct param *p, int n, const 
   if (n > 0) printf("%s (name, default, range, unit, meaning):\n", title);
   for (int k = 0; k < n; k++) {
     char word[64], range[64] = "";
-    const double value = defaults ? *(const double *)((const char *)defaults + p[k].offset) : p[k].initial;
+    const double value =
+      defaults ? *(const double *)((const char *)defaults + p[k].offset) : p[k].initial;
     if (!strchr(p[k].unit, '|')) snprintf(range, sizeof range, "%g .. %g", p[k].low, p[k].high);
-    printf("  %-18s %-12s %-16s [%s] %s\n", p[k].name, param_text(&p[k], value, word), range, p[k].unit, p[k].meaning);
+    printf("  %-18s %-12s %-16s [%s] %s\n", p[k].name, param_text(&p[k], value, word), range,
+           p[k].unit, p[k].meaning);
   }
 }
 
@@ -118,9 +127,9 @@ static void show_solver(const struct solver *s, int json)
   }
   print_json(json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o}", "kind", "solver", "name",
                        s->name, "about", s->about, "paper", s->paper, "doi", s->doi, "differences",
-                       s->differences, "parameters",
-                       params_json(s->params, s->num_params, 0, NULL), "fields",
-                       fields_json(s->fields, s->num_fields), "can", abilities_json(s->can)));
+                       s->differences, "parameters", params_json(s->params, s->num_params, 0, NULL),
+                       "fields", fields_json(s->fields, s->num_fields), "can",
+                       abilities_json(s->can)));
 }
 
 static json_t *dims_json(unsigned dims)
@@ -135,7 +144,8 @@ static json_t *measures_json(const unsigned *measures)
 {
   json_t *array = json_array();
   for (int k = NUM_GENERAL_METRICS; k < NUM_METRICS; k++)
-    if (measures[k / 32] >> (k % 32) & 1u) json_array_append_new(array, json_string(metric_names[k]));
+    if (measures[k / 32] >> (k % 32) & 1u)
+      json_array_append_new(array, json_string(metric_names[k]));
   return array;
 }
 
@@ -150,22 +160,23 @@ static void show_scene(const struct benchmark *b, int json)
     json_t *own = params_json(b->params, b->num_params, 0, NULL);
     json_array_extend(parameters, own);
     json_decref(own);
-    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "kind", "scene", "name", b->name,
-                         "about", b->about, "source", b->source, "parameters", parameters, "asks",
-                         abilities_json(b->asks), "dims", dims_json(b->dims), "metrics",
+    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "kind", "scene", "name",
+                         b->name, "about", b->about, "source", b->source, "parameters", parameters,
+                         "asks", abilities_json(b->asks), "dims", dims_json(b->dims), "metrics",
                          measures_json(b->measures)));
     return;
   }
   printf("%s: %s\n  %s\n", b->name, b->about, b->source);
-  print_params("parameters of every scene, with this scene's defaults", scene_param_rows, num_scene_params, &common);
+  print_params("parameters of every scene, with this scene's defaults", scene_param_rows,
+               num_scene_params, &common);
   print_params("its own parameters", b->params, b->num_params, NULL);
 }
 
 static void show_metric(int k, int json)
 {
   if (json)
-    print_json(json_pack("{s:s, s:s, s:s, s:s}", "kind", "metric", "name", metric_names[k], "unit", metric_units[k],
-                         "about", metric_about[k]));
+    print_json(json_pack("{s:s, s:s, s:s, s:s}", "kind", "metric", "name", metric_names[k], "unit",
+                         metric_units[k], "about", metric_about[k]));
   else
     printf("%s [%s]: %s\n", metric_names[k], metric_units[k], metric_about[k]);
 }
@@ -195,5 +206,6 @@ status verb_show(const struct options *o)
   for (int k = 0; k < num_benchmarks; k++) names[n++] = benchmarks[k]->name;
   const char *near = nearest_name(o->name, names, n);
   return near ? user_error("show: nothing is called '%s'; the nearest name is '%s'", o->name, near)
-              : user_error("show: nothing is called '%s'; 'sphbench list' lists what there is", o->name);
+              : user_error("show: nothing is called '%s'; 'sphbench list' lists what there is",
+                           o->name);
 }

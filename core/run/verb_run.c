@@ -33,8 +33,9 @@ static void on_signal(int number) { stop_signal = number; }
 
 static const char *stop_reason(void)
 {
-  return stop_signal == SIGINT ? "stopped by Ctrl-C"
-         : stop_signal == SIGHUP ? "stopped as its terminal was closed" : "stopped by SIGTERM";
+  return stop_signal == SIGINT   ? "stopped by Ctrl-C"
+         : stop_signal == SIGHUP ? "stopped as its terminal was closed"
+                                 : "stopped by SIGTERM";
 }
 
 static void catch_signals(void)
@@ -66,10 +67,12 @@ static status write_frame(struct session *s, const struct snapshot *now)
   struct result_array arrays[5] = {{"position", "m", "position", DIM, real_type(), now->x},
                                    {"velocity", "m/s", "velocity", DIM, real_type(), now->v}};
   int n = 2;
-  if (now->p) arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), now->p};
+  if (now->p)
+    arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), now->p};
   else if (store_find(&s->run->store, "p")) /* at the start: every frame has the same arrays */
     arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), NULL};
-  arrays[n++] = (struct result_array){"id", "1", "label given at the start", 1, RESULT_INT, now->id};
+  arrays[n++] =
+    (struct result_array){"id", "1", "label given at the start", 1, RESULT_INT, now->id};
   int *order = order_by_label(now);
   real *none = calloc((size_t)now->n + 1, sizeof(real));
   if (!order || !none) {
@@ -80,8 +83,9 @@ static status write_frame(struct session *s, const struct snapshot *now)
   for (int k = 0; k < n; k++)
     if (!arrays[k].data) arrays[k].data = none;
   const struct result_set fluid = {now->n, order, n, arrays};
-  const struct fact numbers[] = {{"step", "1", "number of steps so far", (double)now->step, NULL},
-                                 {"iterations", "1", "of the last step", s->run->step_iterations, NULL}};
+  const struct fact numbers[] = {
+    {"step", "1", "number of steps so far", (double)now->step, NULL},
+    {"iterations", "1", "of the last step", s->run->step_iterations, NULL}};
   const status result = result_file_add_frame(s->file, now->time, &fluid, 2, numbers);
   free(order);
   free(none);
@@ -92,7 +96,8 @@ static status write_walls(struct session *s, const struct snapshot *now)
 {
   const int n = now->n_all - now->n;
   if (n == 0) return OK;
-  const struct result_array array = {"position", "m", "position of wall particles", DIM, real_type(), now->x + now->n};
+  const struct result_array array = {"position", "m",         "position of wall particles",
+                                     DIM,        real_type(), now->x + now->n};
   const struct result_set walls = {n, NULL, 1, &array};
   return result_file_add_walls(s->file, &walls);
 }
@@ -184,15 +189,16 @@ static status project_once(struct session *s)
 static void print_summary(const struct session *s)
 {
   const struct run_facts *f = &s->facts.run;
-  printf("%s with %s (%s): %ld particles, %ld steps to t = %.6g s, %.2f iterations per step\n", f->scene,
-         f->solver, f->variant, f->particles, f->steps, f->time_end, f->iterations.mean);
+  printf("%s with %s (%s): %ld particles, %ld steps to t = %.6g s, %.2f iterations per step\n",
+         f->scene, f->solver, f->variant, f->particles, f->steps, f->time_end, f->iterations.mean);
   if (f->reason) printf("%s: %s\n", f->status == RUN_DIVERGED ? "diverged" : "stopped", f->reason);
   for (int k = 0; k < f->num_metrics; k++)
     if (isfinite(f->metrics[k].value))
       printf("  %-22s %12.6g %s\n", f->metrics[k].name, f->metrics[k].value, f->metrics[k].unit);
   printf("time:");
   for (int k = 0; k < f->timing.num_phases; k++)
-    if (f->timing.phases[k].value > 5e-4) printf(" %s %.3f s", f->timing.phases[k].name, f->timing.phases[k].value);
+    if (f->timing.phases[k].value > 5e-4)
+      printf(" %s %.3f s", f->timing.phases[k].name, f->timing.phases[k].value);
   printf(", in all %.3f s; %.3g us per particle and step\n", f->timing.total,
          1e6 * f->timing.per_step / (double)(f->particles > 0 ? f->particles : 1));
 }
@@ -236,8 +242,10 @@ static status dry_run(const struct session *s)
          s->steps, run->dt);
   for (int k = 0; k < s->plan.num_parameters; k++) {
     const struct fact *f = &s->plan.parameters[k];
-    if (f->word) printf("  %-18s %-12s %s\n", f->name, f->word, f->about);
-    else printf("  %-18s %-12.9g %s [%s]\n", f->name, f->value, f->about, f->unit);
+    if (f->word)
+      printf("  %-18s %-12s %s\n", f->name, f->word, f->about);
+    else
+      printf("  %-18s %-12.9g %s [%s]\n", f->name, f->value, f->about, f->unit);
   }
   if (s->o->explain) explain(run);
   return OK;

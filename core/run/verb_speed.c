@@ -1,5 +1,5 @@
-/* `sphbench speed`: microseconds per particle of the neighbour search, of a solver's iteration and of its step, on a settled
- * heap, beside what the machine can do at most. */
+/* `sphbench speed`: microseconds per particle of the neighbour search, of a solver's iteration and
+ * of its step, on a settled heap, beside what the machine can do at most. */
 #include <jansson.h>
 #include <math.h>
 #include <omp.h>
@@ -23,7 +23,8 @@ struct speed_case {
   double fraction; /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
 };
 
-/* A heap: a block of fluid on the floor of a box, its lattice disturbed, as it lies after settling. */
+/* A heap: a block of fluid on the floor of a box, its lattice disturbed, as it lies after settling.
+ */
 static status heap(struct scene *scene, int particles)
 {
   const int side = (int)lround(pow(particles, 1.0 / DIM));
@@ -52,7 +53,8 @@ static status heap(struct scene *scene, int particles)
   return OK;
 }
 
-/* Seconds per step, the best of ROUNDS times STEPS; *search gets those of the neighbour search alone. */
+/* Seconds per step, the best of ROUNDS times STEPS; *search gets those of the neighbour search
+ * alone. */
 static status time_steps(struct run *run, double *step, double *search)
 {
   *step = *search = 1e300;
@@ -67,7 +69,9 @@ static status time_steps(struct run *run, double *step, double *search)
     if (each < *step) *step = each;
     if (nb < *search) *search = nb;
   }
-  return run->diverged ? status_set(ERR_RUN, "the heap diverged with '%s': %s", run->solver->name, run->reason) : OK;
+  return run->diverged
+           ? status_set(ERR_RUN, "the heap diverged with '%s': %s", run->solver->name, run->reason)
+           : OK;
 }
 
 /* A run on the heap with so many fixed iterations (0: the solver's own stopping rule). */
@@ -91,7 +95,8 @@ static double iterations_per_step(const struct run *run)
   return (double)total;
 }
 
-static status time_solver(const struct solver *solver, int particles, double bandwidth, struct speed_case *c)
+static status time_solver(const struct solver *solver, int particles, double bandwidth,
+                          struct speed_case *c)
 {
   struct run *run = NULL;
   double few, many, search, unused, few_iterations;
@@ -123,7 +128,8 @@ static status time_solver(const struct solver *solver, int particles, double ban
     c->mean_iterations = few_iterations;
     const double more = iterations_per_step(run) - few_iterations;
     c->iteration = more > 0 ? 1e6 * (many - few) / more / c->particles : (double)NAN;
-    /* at the least: the pair list once per sweep over pairs, two sweeps, and ten reals per particle */
+    /* at the least: the pair list once per sweep over pairs, two sweeps, and ten reals per particle
+     */
     const double bytes = 2 * sizeof(int) * (c->neighbours_mean + 1) + 10 * sizeof(real);
     c->fraction = bandwidth > 0 ? bytes / bandwidth / (1e-6 * c->iteration) : (double)NAN;
   }
@@ -138,8 +144,8 @@ static status write_json(const char *path, const struct provenance *p, const str
 {
   json_t *cases = json_array();
   for (int k = 0; k < n; k++) {
-    json_t *row = json_pack("{s:s, s:s, s:i, s:i}", "case", "heap", "solver", c[k].solver, "particles", c[k].particles,
-                            "walls", c[k].walls);
+    json_t *row = json_pack("{s:s, s:s, s:i, s:i}", "case", "heap", "solver", c[k].solver,
+                            "particles", c[k].particles, "walls", c[k].walls);
     json_object_set_new(row, "neighbours_mean", number(c[k].neighbours_mean));
     json_object_set_new(row, "neighbours_us_per_particle", number(c[k].neighbours));
     json_object_set_new(row, "iteration_us_per_particle", number(c[k].iteration));
@@ -149,11 +155,13 @@ static status write_json(const char *path, const struct provenance *p, const str
     json_object_set_new(row, "fraction_of_ceiling", number(c[k].fraction));
     json_array_append_new(cases, row);
   }
-  json_t *all = json_pack("{s:{s:s, s:i, s:s, s:s, s:s, s:s}, s:{s:f, s:f}, s:o}", "machine", "cpu", p->cpu, "threads",
-                          p->threads, "variant", SPHBENCH_VARIANT, "compiler", p->compiler, "date", p->date, "commit",
-                          p->commit, "ceilings", "bandwidth_bytes_per_s", top->bandwidth, "peak_flops", top->flops,
-                          "cases", cases);
-  const int failed = strcmp(path, "-") == 0 ? json_dumpf(all, stdout, JSON_INDENT(1)) : json_dump_file(all, path, JSON_INDENT(1));
+  json_t *all =
+    json_pack("{s:{s:s, s:i, s:s, s:s, s:s, s:s}, s:{s:f, s:f}, s:o}", "machine", "cpu", p->cpu,
+              "threads", p->threads, "variant", SPHBENCH_VARIANT, "compiler", p->compiler, "date",
+              p->date, "commit", p->commit, "ceilings", "bandwidth_bytes_per_s", top->bandwidth,
+              "peak_flops", top->flops, "cases", cases);
+  const int failed = strcmp(path, "-") == 0 ? json_dumpf(all, stdout, JSON_INDENT(1))
+                                            : json_dump_file(all, path, JSON_INDENT(1));
   json_decref(all);
   return failed ? status_set(ERR_IO, "cannot write '%s'", path) : OK;
 }
@@ -184,8 +192,9 @@ static status check_solvers(const char *list)
 
 static void print_case(const struct speed_case *c)
 {
-  printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles, c->neighbours_mean,
-         c->neighbours, c->iteration, c->step, c->mean_iterations, c->bytes_per_particle, c->fraction);
+  printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles,
+         c->neighbours_mean, c->neighbours, c->iteration, c->step, c->mean_iterations,
+         c->bytes_per_particle, c->fraction);
   fflush(stdout);
 }
 
@@ -199,12 +208,14 @@ status verb_speed(const struct options *o)
   struct provenance p;
   provenance_fill(&p, (int)threads, o->argc, (const char *const *)o->argv);
   const struct ceilings top = ceilings_measure();
-  printf("%s, %ld thread(s), %s\nceilings: %.1f GB/s (triad), %.0f GFLOP/s (multiply-add)\n", p.cpu, threads,
-         SPHBENCH_VARIANT, 1e-9 * top.bandwidth, 1e-9 * top.flops);
-  printf("heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they can be fixed\n", SUPPORT,
-         FEW);
-  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours", "iteration", "step",
-         "iters", "B/particle", "ceiling");
+  printf("%s, %ld thread(s), %s\nceilings: %.1f GB/s (triad), %.0f GFLOP/s (multiply-add)\n", p.cpu,
+         threads, SPHBENCH_VARIANT, 1e-9 * top.bandwidth, 1e-9 * top.flops);
+  printf(
+    "heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they "
+    "can be fixed\n",
+    SUPPORT, FEW);
+  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours",
+         "iteration", "step", "iters", "B/particle", "ceiling");
   struct speed_case cases[64];
   int n = 0;
   for (int k = 0; k < num_solvers && n < 64; k++) {

@@ -28,8 +28,10 @@ class Words(Refusal):
     def test_names(self):
         near = "the nearest known one is"
         self.refused("rum", says=["'rum'", f"{near} 'run'"])
-        self.refused("run", "dam-brake", "--solver", "pbf", says=["'dam-brake'", f"{near} 'dam-break'"])
-        self.refused("run", "tank", "--solver", "dual-sd", says=["solver 'dual-sd'", f"{near} 'dual-s"])
+        self.refused("run", "dam-brake", "--solver", "pbf",
+                     says=["'dam-brake'", f"{near} 'dam-break'"])
+        self.refused("run", "tank", "--solver", "dual-sd",
+                     says=["solver 'dual-sd'", f"{near} 'dual-s"])
         self.refused("run", "tank", "--solver", "zzzzzzzz", says="'sphbench list solvers'")
         self.refused("run", "zzzzzzzz", "--solver", "pbf", says="'sphbench list scenes'")
         self.refused(*PATCH, "--sovler", "pbf", says=["'--sovler'", "'--solver'"])
@@ -129,7 +131,8 @@ class Values(Refusal):
 
 class Scenes(Refusal):
     def test_what_a_scene_cannot_be(self):
-        self.refused("run", "rotating-patch", "--dim", "3", "--solver", "pbf", says=["3 found", "2-D"])
+        self.refused("run", "rotating-patch", "--dim", "3", "--solver", "pbf",
+                     says=["3 found", "2-D"])
         self.refused("run", "first-step", "--solver", "pbf", says=["'pbf' cannot project", "scene"])
         self.refused(*PATCH[:4], "--spacing", "1", says="axis 1")
         self.refused("run", "dam-break", "--solver", "pbf", "--set", "width=5", says="box")
@@ -149,7 +152,8 @@ class Scenes(Refusal):
         self.refused("run", self.write("a: [1"), "--solver", "pbf", says=["a.yaml:", "not YAML"])
         self.refused("run", self.write(b"\x00\x01\xff"), "--solver", "pbf", says="not YAML")
         self.refused("run", self.write("just words"), "--solver", "pbf", says="a.yaml:1:1")
-        self.refused("run", self.write("dim: 2\n" + "#" * (1 << 20)), "--solver", "pbf", says="1 MiB")
+        self.refused("run", self.write("dim: 2\n" + "#" * (1 << 20)), "--solver", "pbf",
+                     says="1 MiB")
         if os.geteuid():
             os.chmod(self.dir / self.write("dim: 2"), 0)
             self.refused("run", "a.yaml", "--solver", "pbf", says="Permission denied")
@@ -169,12 +173,14 @@ class Scenes(Refusal):
                 ("dim: 2\nfluid:\n  - disc: {centre: [0, 0]}\n", "3:", ["'radius'"]),
                 ("dim: 2\nfluid: []\n", "2:8", ["fluid"]),
                 ("dim: 2\n", "1:1", ["'fluid'"])):
-            self.refused("run", self.write(text), "--solver", "pbf", says=[f"a.yaml:{place}", *parts])
+            self.refused("run", self.write(text), "--solver", "pbf",
+                         says=[f"a.yaml:{place}", *parts])
 
     def test_particles(self):
         params = "dim: 2\nparams: {spacing: 0.1}\nfluid:\n"
         box = "  - box: {low: [0, 0], high: [1, 1]}\n"
-        self.refused("run", self.write(params + box + box), "--solver", "pbf", says=["both at", "overlap"])
+        self.refused("run", self.write(params + box + box), "--solver", "pbf",
+                     says=["both at", "overlap"])
         self.refused("run", self.write(params + "  - box: {low: [0, 0], high: [0.01, 0.01]}\n"),
                      "--solver", "pbf", says=["a.yaml:4:5", "half the spacing"])
         self.refused("run", self.write(params + "  - disc: {centre: [0, 0], radius: 0.01}\n"),
@@ -183,8 +189,9 @@ class Scenes(Refusal):
                      "--solver", "pbf", says="outside the domain")
         self.refused("run", self.write(params + box + "domain: {low: [0, 0], high: [1, 1], "
                                        "period: [1, 0]}\n"), "--solver", "dual-sa", says="periodic")
-        self.refused("run", self.write(params + box.replace("1]}", "0.4]}") + "domain: {low: [0, 0], "
-                                       "high: [1, 0.4], period: [0, 0.4]}\n"), "--solver", "pbf",
+        low = box.replace("1]}", "0.4]}")
+        self.refused("run", self.write(params + low + "domain: {low: [0, 0], high: [1, 0.4], "
+                                       "period: [0, 0.4]}\n"), "--solver", "pbf",
                      says="the period of 0.4 m along y is shorter")
         self.refused("run", self.write(params + box), "--solver", "pbf", "--dim", "3", says="--dim")
 
@@ -220,7 +227,8 @@ class Outputs(Refusal):
         self.refused(*PATCH, "--explain", "--json", "-", says="standard output")
 
     def test_full_disk(self):
-        self.refused(*PATCH, "--quiet", "--json", "/dev/full", says=["'/dev/full'", "No space left"])
+        self.refused(*PATCH, "--quiet", "--json", "/dev/full",
+                     says=["'/dev/full'", "No space left"])
         with open("/dev/full", "wb") as full:
             out, err = self.call(*PATCH, code=2, stdout=full)
         self.assertEqual(out, "")
@@ -231,8 +239,8 @@ class Outputs(Refusal):
             signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
         for name in ("new.vtkhdf", "old.vtkhdf"):
-            self.refused(*PATCH, "--quiet", "-o", name, "--json", "a.json", says=[name, "too large"],
-                         preexec_fn=limit)
+            self.refused(*PATCH, "--quiet", "-o", name, "--json", "a.json",
+                         says=[name, "too large"], preexec_fn=limit)
         self.assertEqual((self.dir / "old.vtkhdf").read_text(), "older")
         long = ("--t-end", "1", "--set", "samples=1000", "--quiet", "--json", "a.json")
         self.refused(*PATCH[:-2], *long, says=["a.json", "too large"], preexec_fn=limit)
@@ -277,7 +285,8 @@ class Outputs(Refusal):
         if machine > 64e9:
             self.skipTest("takes too long on a machine with so much memory")
         self.refused("run", "tank", "--dim", "3", "--solver", "pbf", "--precision", "float",
-                     "--spacing", spacing, "--set", "support=10", "--dry-run", says="this machine has")
+                     "--spacing", spacing, "--set", "support=10", "--dry-run",
+                     says="this machine has")
 
 
 if __name__ == "__main__":

@@ -284,7 +284,8 @@ class Lists(Case):
     def test_set_takes_all_that_show_lists(self):
         rows = {row["name"]: row for name in ("tank", "dual-sc")
                 for row in self.asked("show", name)["parameters"]}
-        words = [word for name, row in rows.items() for word in ("--set", f"{name}={row['default']}")]
+        words = [word for name, row in rows.items()
+                 for word in ("--set", f"{name}={row['default']}")]
         out, _ = self.call("run", "tank", "--solver", "dual-sc", "--dry-run", *words)
         for name in rows:
             self.assertRegex(out, rf"(?m)^  {name} ")

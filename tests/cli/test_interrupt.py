@@ -184,7 +184,7 @@ class Diverged(Case):
 
     def test_too_fast(self):
         """A state that is absurd but finite is the last frame."""
-        facts, file = self.check("tank", "dual-sc", "--spacing", "0.04", "--set", "kappa=100",
+        facts, file = self.check("rotating-patch", "dfsph", *self.WORDS,
                                  reason="times what the energy allows")
         self.assertEqual(file["VTKHDF/Steps/Values"][-1], facts["time_end"])
 
