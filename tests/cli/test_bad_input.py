@@ -256,9 +256,10 @@ class Outputs(Refusal):
         return process.returncode, err.decode()
 
     def test_little_memory(self):
-        """From what a tiny run needs up to what this one needs, so that it ends in many places."""
+        """From what a tiny run needs up to what this one needs, so that it ends in many places.
+        Without a result file: HDF5 1.10 itself crashes where it cannot allocate in H5Fcreate."""
         for solver in ("dual-sc", "dfsph"):
-            words = ("--solver", solver, "--t-end", "0.001", "-o", "a", "--spacing")
+            words = ("--solver", solver, "--t-end", "0.001", "--json", "a", "--spacing")
             low, high = 1 << 20, 1 << 30
             while high - low > 1 << 20:
                 middle = (low + high) // 2
@@ -272,7 +273,7 @@ class Outputs(Refusal):
                 if code:
                     self.assertIn(code, (2, 3), err)
                     self.one_sentence(err)
-                    self.assertRegex(err, "memory|writing failed")  # HDF5 does not say why
+                    self.assertIn("memory", err)
                     self.assertEqual(self.files(), [])
                     endings.add(err)
             self.assertGreater(len(endings), 5)
