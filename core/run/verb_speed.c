@@ -20,7 +20,8 @@ struct speed_case {
   int particles, walls;
   double neighbours_mean, neighbours, iteration, step, bytes_per_particle; /* us per particle */
   double mean_iterations;
-  double fraction; /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
+  double fraction;  /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
+  char reason[256]; /* why there is no time; "": there is one */
 };
 
 /* A heap: a block of fluid on the floor of a box, its lattice disturbed, as it lies after settling.
@@ -153,6 +154,7 @@ static status write_json(const char *path, const struct provenance *p, const str
     json_object_set_new(row, "step_iterations", number(c[k].mean_iterations));
     json_object_set_new(row, "bytes_per_particle", number(c[k].bytes_per_particle));
     json_object_set_new(row, "fraction_of_ceiling", number(c[k].fraction));
+    if (c[k].reason[0]) json_object_set_new(row, "reason", json_string(c[k].reason));
     json_array_append_new(cases, row);
   }
   json_t *all =
@@ -195,6 +197,7 @@ static void print_case(const struct speed_case *c)
   printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles,
          c->neighbours_mean, c->neighbours, c->iteration, c->step, c->mean_iterations,
          c->bytes_per_particle, c->fraction);
+  if (c->reason[0]) printf("  %s\n", c->reason);
   fflush(stdout);
 }
 
@@ -221,7 +224,13 @@ status verb_speed(const struct options *o)
   for (int k = 0; k < num_solvers && n < 64; k++) {
     if (!wanted(o->solvers, solvers[k]->name)) continue;
     memset(&cases[n], 0, sizeof cases[n]);
-    TRY(time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]));
+    cases[n].solver = solvers[k]->name;
+    cases[n].iteration = cases[n].fraction = cases[n].step = (double)NAN;
+    const status result = time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]);
+    if (result == ERR_RUN) /* a result: shown as a gap */
+      snprintf(cases[n].reason, sizeof cases[n].reason, "%s", status_sentence());
+    else if (result != OK)
+      return result;
     print_case(&cases[n++]);
   }
   return o->json ? write_json(o->json, &p, &top, cases, n) : OK;
