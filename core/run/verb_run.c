@@ -9,6 +9,7 @@
 
 #include "../base/memory.h"
 #include "../base/progress.h"
+#include "../io/h5.h"
 #include "../io/out_path.h"
 #include "../io/result_file.h"
 #include "../io/result_json.h"
@@ -320,6 +321,7 @@ status verb_run(const struct options *o)
   TRY(option_whole("--threads", o->threads, 1, 1024, omp_get_max_threads(), &threads));
   TRY(option_whole("--frames", o->frames, 1, 1000000, 50, &s.frames));
   omp_set_num_threads((int)threads);
+  h5_start(); /* HDF5 crashes where it finds no memory to start in */
   int other_dim = 0;
   status result = plan_make(o, &s.plan, &other_dim);
   if (result == OK && other_dim) {
