@@ -9,6 +9,7 @@
  * Differences from the paper: see DIFFERENCES below. */
 #include "../core/linear/cg.h"
 #include "../core/solver.h"
+#include <limits.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -371,6 +372,9 @@ static status generate_nodes(struct run *run, state *s)
     const real part = s->offset == OFFSET_RANDOM ? (real)run_random(run, draw) : 0;
     s->origin.c[d] = part * s->virtual_spacing * s->dx;
   }
+  if (s->p.n_all > INT_MAX / (STENCIL + 1))
+    return status_set(ERR_MEMORY, "more than %d particles are too many for S.C",
+                      INT_MAX / (STENCIL + 1));
   s->keys = run_keys(run, s->p.n_all * (STENCIL + 1));
   if (!s->keys) return status_set(ERR_MEMORY, "no memory for the virtual particles");
   sweep_over(nearest, s, s->p.n_all);

@@ -29,11 +29,10 @@ static void explain_memory(const struct run *run)
 {
   const double n = run->view->p.n > 0 ? run->view->p.n : 1;
   const struct pair_list *nb = &run->neighbours;
-  printf(
-    "bytes per particle: %.1f in all, %.1f of them fields and the room to sort them, %.1f the "
-    "pair list",
-    run_bytes_per_particle(run), (double)store_bytes(&run->store) / n,
-    sizeof(int) * (2.0 * nb->row_capacity + nb->slot_capacity) / n);
+  printf("bytes per particle: %.1f in all, %.1f of them fields and the room to sort them, %.1f the "
+         "pair list",
+         run_bytes_per_particle(run), (double)store_bytes(&run->store) / n,
+         sizeof(int) * (2.0 * nb->row_capacity + nb->slot_capacity) / n);
   if (run->view->p.n > 0 && nb->pairs.slots > 0)
     printf(" (%.1f slots per particle)", (double)nb->pairs.slots / n);
   printf("\n");

@@ -192,6 +192,18 @@ static status check_solvers(const char *list)
   return OK;
 }
 
+static void print_heading(const struct provenance *p, const struct ceilings *top)
+{
+  printf("%s, %d thread(s), %s\nceilings: %.1f GB/s (triad), %.0f GFLOP/s (multiply-add)\n", p->cpu,
+         p->threads, SPHBENCH_VARIANT, 1e-9 * top->bandwidth, 1e-9 * top->flops);
+  printf(
+    "heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they "
+    "can be fixed\n",
+    SUPPORT, FEW);
+  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours",
+         "iteration", "step", "iters", "B/particle", "ceiling");
+}
+
 static void print_case(const struct speed_case *c)
 {
   printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles,
@@ -211,14 +223,8 @@ status verb_speed(const struct options *o)
   struct provenance p;
   provenance_fill(&p, (int)threads, o->argc, (const char *const *)o->argv);
   const struct ceilings top = ceilings_measure();
-  printf("%s, %ld thread(s), %s\nceilings: %.1f GB/s (triad), %.0f GFLOP/s (multiply-add)\n", p.cpu,
-         threads, SPHBENCH_VARIANT, 1e-9 * top.bandwidth, 1e-9 * top.flops);
-  printf(
-    "heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they "
-    "can be fixed\n",
-    SUPPORT, FEW);
-  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours",
-         "iteration", "step", "iters", "B/particle", "ceiling");
+  const int say = !o->quiet && !(o->json && strcmp(o->json, "-") == 0);
+  if (say) print_heading(&p, &top);
   struct speed_case cases[64];
   int n = 0;
   for (int k = 0; k < num_solvers && n < 64; k++) {
@@ -231,7 +237,8 @@ status verb_speed(const struct options *o)
       snprintf(cases[n].reason, sizeof cases[n].reason, "%s", status_sentence());
     else if (result != OK)
       return result;
-    print_case(&cases[n++]);
+    if (say) print_case(&cases[n]);
+    n++;
   }
   return o->json ? write_json(o->json, &p, &top, cases, n) : OK;
 }
