@@ -4,6 +4,7 @@
 #define SOLVER_H
 #include "base/param.h"
 #include "base/status.h"
+#include "neighbours/constraint.h"
 #include "neighbours/neighbours.h"
 #include "particles/particles.h"
 #include "sph/sweep.h"
@@ -24,7 +25,13 @@ extern "C" {
   A(XSPH, "apply XSPH viscosity")                               \
   A(PERIODIC, "run in a periodic domain")                       \
   A(PROJECT, "project velocities without moving the particles") \
-  A(MOMENTUM, "keep linear momentum to rounding")
+  A(MOMENTUM, "keep linear momentum to rounding")               \
+  A(VISCOSITY, "apply viscosity")                               \
+  A(TENSION, "apply surface tension")                           \
+  A(FLUIDS, "handle fluids of different rest density")          \
+  A(MOVING_WALLS, "handle walls that move")                     \
+  A(BODIES, "carry rigid bodies")                               \
+  A(EMITTERS, "take in new particles during a run")
 #define A(name, text) ABILITY_##name,
 enum ability { ABILITY_LIST(A) NUM_ABILITIES };
 #undef A

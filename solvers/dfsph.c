@@ -66,24 +66,15 @@ STAGE void forget_change(const state *s, int i) { s->change[i] = 0; }
 
 /* rho_i = sum_j m_j W_ij
  * Eq. (11)   alpha_i = rho_i / D_i,   D_i = |sum_j m_j grad W_ij|^2 + sum_j |m_j grad W_ij|^2,
- *            the second sum not over walls, which do not give way */
+ *            the second sum not over walls, which do not give way; several fluids: see constraint.h
+ */
 STAGE void factor(const state *s, int i)
 {
-  const struct particles p = s->p;
-  lanes rho = NO_LANES, others = NO_LANES;
-  vecs own = NO_VECS;
-  for_neighbours (s, i, ij) {
-    const lanes m = of(p.m, ij);
-    const vecs g = scale(m, gradW(&s->nb, ij));
-    rho += m * W(&s->nb, ij);
-    own = add(own, g);
-    others += only_below(ij, p.n, dot(g, g));
-  }
-  const vec grad = sum(own);
+  const struct constraint c = constraint_at(&s->p, &s->nb, i);
   const real least = (real)1e-6 * sq(s->rho0 * s->nb.kernel.inv_R);
-  p.rho[i] = sum(rho);
-  s->excess[i] = (p.rho[i] - s->rho0) / s->rho0;
-  s->factor[i] = 1 / larger(inner(grad, grad) + sum(others), least);
+  s->p.rho[i] = c.rho;
+  s->excess[i] = (c.rho - s->rho0) / s->rho0;
+  s->factor[i] = 1 / larger(c.yield, least);
 }
 
 /* dt/rho_0 Drho_i/Dt,   Drho_i/Dt = sum_j m_j (v_i - v_j) . grad W_ij */
@@ -128,7 +119,7 @@ STAGE void repel(const state *s, int i)
   vecs a = NO_VECS;
   for_neighbours (s, i, ij)
     a = add(a, scale(of(s->p.m, ij) * (own + of(s->change, ij)), gradW(&s->nb, ij)));
-  s->p.v[i] = madd(s->p.v[i], -s->dt, sum(a));
+  s->p.v[i] = madd(s->p.v[i], -s->dt * light(&s->p, i), sum(a));
 }
 /* kappa_i = sum of its changes, and what that does to v_i */
 STAGE void correct_density(const state *s, int i)
@@ -256,7 +247,7 @@ const struct solver solver_dfsph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM),
+         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(FLUIDS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

@@ -61,21 +61,10 @@ STAGE void no_pressure(const state *s, int i) { s->p.p[i] = 0; }
  * Eq. (11)       lambda_i = -C_i / (sum_k |grad_k C_i|^2 + epsilon) */
 STAGE real multiplier(const state *s, int i)
 {
-  const struct particles p = s->p;
-  lanes rho = NO_LANES, others = NO_LANES;
-  vecs own = NO_VECS;
-  for_neighbours (s, i, ij) {
-    const lanes m = of(p.m, ij);
-    const vecs g = scale(m, gradW(&s->nb, ij));
-    rho += m * W(&s->nb, ij);
-    own = add(own, g);
-    others += only_below(ij, p.n, dot(g, g));
-  }
-  p.rho[i] = sum(rho);
-  const vec grad = sum(own);
-  const real C = (p.rho[i] - s->rho0) / s->rho0;
-  const real gradients = (inner(grad, grad) + sum(others)) / sq(s->rho0);
-  const real lambda = -C / (gradients + s->epsilon / sq(s->dx));
+  const struct constraint c = constraint_at(&s->p, &s->nb, i);
+  const real C = (c.rho - s->rho0) / s->rho0;
+  const real lambda = -C / (c.yield / sq(s->rho0) + s->epsilon / sq(s->dx));
+  s->p.rho[i] = c.rho;
   s->lambda[i] = s->clamp == (real)CLAMPED ? smaller(lambda, 0) : lambda;
   return larger(C, 0);
 }
@@ -99,7 +88,7 @@ STAGE void correct(const state *s, int i)
     if (s->scorr_k > 0) strength += artificial_pressure(s, ij);
     shift = add(shift, scale(of(p.m, ij) * strength, gradW(&s->nb, ij)));
   }
-  s->shift[i] = times(1 / s->rho0, sum(shift));
+  s->shift[i] = times(light(&p, i) / s->rho0, sum(shift));
 }
 
 /* Alg. 1, lines 17 and 21   x*_i = x*_i + dx_i,   v_i = (x*_i - x_i)/dt */
@@ -163,7 +152,7 @@ const struct solver solver_pbf = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(MOMENTUM),
+         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(FLUIDS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,
