@@ -33,6 +33,10 @@ status store_open(struct store *store, const struct solver *solver, unsigned nee
 /* Change the number of virtual particles. Errors: ERR_MEMORY. */
 status store_resize_virtual(struct store *store, int n);
 
+/* Make room for n more fluid particles behind the last one: all their entries are 0, wall particles
+ * keep theirs. Errors: ERR_MEMORY. */
+status store_insert_fluid(struct store *store, int n);
+
 /* Sort the KEPT entries [begin, begin + n) of the fields in `where_mask` (bits 1 << enum
  * field_where). Errors: ERR_MEMORY. */
 status store_permute(struct store *store, unsigned where_mask, const int *order, int begin, int n);

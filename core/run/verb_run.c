@@ -84,10 +84,11 @@ static status write_frame(struct session *s, const struct snapshot *now)
   for (int k = 0; k < n; k++)
     if (!arrays[k].data) arrays[k].data = none;
   const struct result_set fluid = {now->n, order, n, arrays};
-  const struct fact numbers[] = {
+  struct fact numbers[2 + MOST_BODIES * BODY_NUMBERS] = {
     {"step", "1", "number of steps so far", (double)now->step, NULL},
     {"iterations", "1", "of the last step", s->run->step_iterations, NULL}};
-  const status result = result_file_add_frame(s->file, now->time, &fluid, 2, numbers);
+  const int num = 2 + bodies_report(s->run, numbers + 2);
+  const status result = result_file_add_frame(s->file, now->time, &fluid, num, numbers);
   free(order);
   free(none);
   return result;
