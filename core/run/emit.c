@@ -54,7 +54,7 @@ static status layer_make(struct layer *layer, const struct scene_emitter *e, dou
 /* One value, `times` times, into [at, at + n) of a field that may not exist. */
 static void put(struct run *run, const char *name, int at, int n, const void *value)
 {
-  struct store_field *f = store_find(&run->store, name);
+  struct store_field *f = store_public(&run->store, name);
   for (int k = 0; f && k < n; k++)
     memory_from_host((char *)f->data + f->row.bytes * (size_t)(at + k), value, f->row.bytes);
 }

@@ -65,7 +65,7 @@ static void set_params(const struct solver *solver, const double *values, void *
 /* Copy one array of the scene into [begin, begin + n) of a field that may not exist. */
 static void upload(struct store *store, const char *name, const void *from, int begin, int n)
 {
-  struct store_field *f = store_find(store, name);
+  struct store_field *f = store_public(store, name);
   if (f && n > 0)
     memory_from_host((char *)f->data + f->row.bytes * (size_t)begin, from,
                      f->row.bytes * (size_t)n);

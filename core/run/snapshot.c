@@ -33,7 +33,7 @@ static const struct pairs *build_pairs(const struct snapshot *now)
  * field, or n is 0; *lost is set if there is no memory. */
 static void *download(struct run *run, const char *name, int n, int *lost)
 {
-  struct store_field *f = store_find(&run->store, name);
+  struct store_field *f = store_public(&run->store, name);
   if (!f || n == 0) return NULL;
   void *copy = malloc(f->row.bytes * (size_t)(n + 1) + 64);
   if (copy) memory_to_host(copy, f->data, f->row.bytes * (size_t)n);

@@ -187,6 +187,14 @@ struct store_field *store_find(struct store *store, const char *name)
   return NULL;
 }
 
+struct store_field *store_public(struct store *store, const char *name)
+{
+  for (int k = 0; k < store->num_fields; k++)
+    if (store->field[k].is_public && strcmp(store->field[k].row.name, name) == 0)
+      return &store->field[k];
+  return NULL;
+}
+
 size_t store_bytes(const struct store *store)
 {
   size_t total = 0;

@@ -46,6 +46,8 @@ void store_poison(struct store *store);
 
 /* The field's data (host code: copy through memory_to_host), NULL if it is not there. */
 struct store_field *store_find(struct store *store, const char *name);
+/* Of the public fields only: a solver may have one of its own by the same name. */
+struct store_field *store_public(struct store *store, const char *name);
 
 /* Bytes per element of all fields of that kind, spare room included. */
 size_t store_bytes(const struct store *store);

@@ -70,7 +70,7 @@ static status write_frame(struct session *s, const struct snapshot *now)
   int n = 2;
   if (now->p)
     arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), now->p};
-  else if (store_find(&s->run->store, "p")) /* at the start: every frame has the same arrays */
+  else if (store_public(&s->run->store, "p")) /* at the start: every frame has the same arrays */
     arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), NULL};
   arrays[n++] =
     (struct result_array){"id", "1", "label given at the start", 1, RESULT_INT, now->id};

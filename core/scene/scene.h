@@ -10,19 +10,19 @@ extern "C" {
 
 /* Parameters that every scene has. P(name, default, low, high, unit, meaning); a scene sets its own
  * defaults. */
-#define SCENE_PARAMS(P)                                                                   \
-  P(spacing, 0.01, 1e-9, 1e6, "m", "particle spacing dx at the start")                    \
-  P(dt, 1e-3, 1e-12, 1e6, "s", "time step")                                               \
-  P(t_end, 1, 0, 1e9, "s", "end of the simulated time")                                   \
-  P(support, 2.5, 1.05, 10, "dx", "support radius R of the kernel, in particle spacings") \
-  P(kernel, 0, 0, 3, KERNEL_CHOICES, "smoothing kernel")                                  \
-  P(rho0, 1000, 1e-6, 1e9, "kg/m^3", "rest density")                                      \
-  P(gravity, 9.81, 0, 1e6, "m/s^2", "gravity, along -y in 2-D and -z in 3-D")             \
-  P(walls, 0, 0, 1, "lattice|akinci",                                                     \
-    "weight of wall particles: as in a full lattice, or 1/sum W of Akinci et al. 2012")   \
-  P(xsph, 0, 0, 1, "1", "XSPH coefficient per step (dissipation grows as 1/dt)")          \
-  P(viscosity, 0, 0, 1e9, "Pa s", "dynamic viscosity of the fluid")                       \
-  P(jitter, 0, 0, 1, "dx", "largest random displacement at the start, per axis")          \
+#define SCENE_PARAMS(P)                                                                         \
+  P(spacing, 0.01, 1e-9, 1e6, "m", "particle spacing dx at the start")                          \
+  P(dt, 1e-3, 1e-12, 1e6, "s", "time step")                                                     \
+  P(t_end, 1, 0, 1e9, "s", "end of the simulated time")                                         \
+  P(support, 2.5, 1.05, 10, "dx", "support radius R of the kernel, in particle spacings")       \
+  P(kernel, 0, 0, 3, KERNEL_CHOICES, "smoothing kernel")                                        \
+  P(rho0, 1000, 1e-6, 1e9, "kg/m^3", "rest density")                                            \
+  P(gravity, 9.81, 0, 1e6, "m/s^2", "gravity, along -y in 2-D and -z in 3-D")                   \
+  P(walls, 0, 0, 1, "lattice|akinci",                                                           \
+    "weight of walls: as in a full lattice, or one layer by Akinci et al. 2012 (support 2 dx)") \
+  P(xsph, 0, 0, 1, "1", "XSPH coefficient per step (dissipation grows as 1/dt)")                \
+  P(viscosity, 0, 0, 1e9, "Pa s", "dynamic viscosity of the fluid")                             \
+  P(jitter, 0, 0, 1, "dx", "largest random displacement at the start, per axis")                \
   P(samples, 200, 1, 1e6, "1", "samples of the metrics over the run, at most one per step")
 
 enum { WALLS_LATTICE, WALLS_AKINCI };
