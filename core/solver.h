@@ -26,6 +26,7 @@ extern "C" {
   A(PERIODIC, "run in a periodic domain")                       \
   A(PROJECT, "project velocities without moving the particles") \
   A(MOMENTUM, "keep linear momentum to rounding")               \
+  A(ISOTROPIC, "treat all directions in space alike")           \
   A(VISCOSITY, "apply viscosity")                               \
   A(TENSION, "apply surface tension")                           \
   A(FLUIDS, "handle fluids of different rest density")          \
