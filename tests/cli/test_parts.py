@@ -32,7 +32,7 @@ class Parts(cli_case.Case):
         self.assertEqual(facts["status"], "ok", facts["reason"])
         return facts
 
-    def test_a_square_of_half_the_density_floats_with_its_centre_at_the_surface(self):
+    def test_a_square_of_half_the_density_floats_half_immersed(self):
         """By symmetry, however it is turned; the surface is at 0.4 + 0.5 * 0.2^2 / 1 = 0.42 m."""
         import h5py
         path = self.scene(2.5, "bodies:\n  - box: {low: [0.4, 0.42], high: [0.6, 0.62]}\n"
