@@ -5,6 +5,7 @@
 #include "../solver.h"
 #include "bodies.h"
 #include "store.h"
+#include "visits.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -35,6 +36,7 @@ struct run {
     real *data;
     size_t capacity;
   } coefficients[MAX_PAIR_LISTS];
+  struct pair_visits *visits; /* NULL: pairs are not counted */
   int *order;
   int order_capacity;
   unsigned long long *keys;
