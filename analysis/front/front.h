@@ -5,6 +5,7 @@
 
 status verb_figure(int argc, char **argv);
 status verb_report(int argc, char **argv);
+status verb_precision(int argc, char **argv);
 status verb_doctor(int argc, char **argv);
 status verb_compare(int argc, char **argv);
 status verb_bless(int argc, char **argv);

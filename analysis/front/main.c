@@ -32,9 +32,9 @@ static const char usage[] =
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",   "speed",   "list", "figure",
-                                    "report", "doctor", "compare", "bless"};
-static const char *const later[] = {"sweep", "precision", "stability", "convergence", "claims"};
+static const char *const verbs[] = {"run",    "show",   "speed",   "list",  "figure",
+                                    "report", "doctor", "compare", "bless", "precision"};
+static const char *const later[] = {"sweep", "stability", "convergence", "claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
 
 /* Replace this process by the variant; returns only on failure. */
@@ -95,6 +95,7 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
+  if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);
   if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);
   return unknown(verb);
 }

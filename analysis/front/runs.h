@@ -58,6 +58,9 @@ status queue_work(struct queue *queue);
 /* The file of a run: suffix "json", "vtkhdf" or "log". */
 struct path run_file(const char *results, const char *id, const char *suffix);
 
+/* The last line of a log, without the program's name; to be released by free(). */
+char *run_last_words(const char *log);
+
 void queue_close(struct queue *queue);
 
 /* Processors that this process may use. */

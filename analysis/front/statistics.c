@@ -82,10 +82,14 @@ double slower_by(const struct candidate *a, const struct candidate *b, double fl
 
 double noise_floor(const double *a, const double *b, int n)
 {
-  double most = 1;
-  for (int k = 0; k < n; k++)
-    if (a[k] > 0 && b[k] > 0) most = fmax(most, fmax(a[k] / b[k], b[k] / a[k]));
-  return most;
+  double *factor = malloc(sizeof *factor * (size_t)(n + 1));
+  int found = 0;
+  for (int k = 0; factor && k < n; k++)
+    if (a[k] > 0 && b[k] > 0) factor[found++] = fmax(a[k] / b[k], b[k] / a[k]);
+  if (found > 0) qsort(factor, (size_t)found, sizeof *factor, ascending);
+  const double floor = found > 0 ? factor[(int)ceil(0.95 * found) - 1] : 1;
+  free(factor);
+  return floor;
 }
 
 /* --- what to measure --- */

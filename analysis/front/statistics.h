@@ -28,8 +28,8 @@ int rank_cheapest(const struct candidate *all, int n, double target, struct cand
  * (>= 1) or the intervals overlap. */
 double slower_by(const struct candidate *a, const struct candidate *b, double floor);
 
-/* The noise floor: the largest factor between a[k] and b[k], times of the same thing [n]; 1 for
- * n = 0. */
+/* The noise floor: a factor between a[k] and b[k], times of the same thing [n], that 95 % of them
+ * keep to (the largest below n = 20); 1 for n = 0. */
 double noise_floor(const double *a, const double *b, int n);
 
 /* Times that are worth measuring within a budget: of candidates whose `time` is a rough one, drops

@@ -93,8 +93,7 @@ static void start_some(struct work *w)
 
 /* --- what became of a child --- */
 
-/* The last line of a log, without the program's name. */
-static char *last_line(const char *path)
+char *run_last_words(const char *path)
 {
   char *text;
   size_t size;
@@ -147,7 +146,7 @@ static int classify(struct work *w, const struct run *run, int exit_code, char *
   if (exit_code == 3) outcome = said_in_json(json.text, reason);
   if (outcome != OUTCOME_CRASHED) return outcome;
   if (w->stopped > 0) return NUM_OUTCOMES;
-  *reason = last_line(log.text);
+  *reason = run_last_words(log.text);
   if (exit_code == 2) {
     if (!*reason || strncmp(*reason, "cannot write", 12) != 0) return OUTCOME_UNABLE;
     fail(w, status_set(ERR_IO, "%s", *reason)); /* a full disk says nothing about the solver */

@@ -103,6 +103,12 @@ static void differences_below_noise_are_none(void **state)
   assert_near(noise_floor(first, again, 3), 1.1, 1e-12);
   assert_near(noise_floor(again, first, 3), 1.1, 1e-12);
   assert_near(noise_floor(first, again, 0), 1, 0);
+  double many[40], others[40]; /* two of 40 may be worse */
+  for (int k = 0; k < 40; k++) {
+    many[k] = 2;
+    others[k] = k < 2 ? 20 : k < 3 ? 2.1 : 2;
+  }
+  assert_near(noise_floor(many, others, 40), 1.05, 1e-12);
 }
 
 static void slow_points_are_dropped_first(void **state)
