@@ -31,14 +31,14 @@
 
 enum { DIFFERENCE, SYMMETRIC };
 enum { OFF, ON };
-enum { STILL, MIRROR };
 #define NEAR ((real)0.4) /* distance in R below which w_r and w_rr do not grow */
 
 #define PARAMS(P)                                                                                 \
   P(gradient, DIFFERENCE, 0, 1, "difference|symmetric", "p_j - p_i of the paper, or p_i + p_j")   \
   P(factor, 0, 0, 10, "1", "on the mean pressure gradient of the pairs; 0: d")                    \
   P(correction, OFF, 0, 1, "off|on", "kernel correction of the differences inside the fluid")     \
-  P(walls, MIRROR, 0, 1, "still|mirror", "velocity of walls in the source: theirs, or mirrored")  \
+  P(separation, 1, 0, 1, "1", "part of its velocity with which fluid clings to walls it leaves")  \
+  P(surface_below, 1, 0, 1, "1", "part of A_max below which -sum_j A_ij means free surface")      \
   P(kappa, -1, -1, 100, "1", "density compensation; -1: 0.1 with gravity, 0 without")             \
   P(shifting, 0, 0, 100, "1", "iterations of particle shifting after a step")                     \
   P(shift_inertia, 0.3, 0, 1, "1", "part of the way back to where shifting began")                \
@@ -107,13 +107,20 @@ STAGE void weigh(const state *s, int i)
 
 /* --- the linear system */
 
-/* v_i - v_j; of walls as they move, or the normal part twice: that of a mirrored fluid */
+/* (v_i - v_j).n_j n_j, separation times that if they part: what a wall takes away; 0 in fluid */
+STAGE vecs into_wall(const state *s, struct packet ij)
+{
+  const vecs n = of(s->p.normal, ij);
+  const lanes u = dot(diff(s->p.v, ij), n);
+  return scale(at_most(u, 0) + s->separation * at_least(u, 0), n);
+}
+
+/* v_i - v_j; of walls twice the part above, as of a mirrored fluid */
 STAGE vecs relative_velocity(const state *s, struct packet ij)
 {
   const vecs u = diff(s->p.v, ij);
-  if (!s->p.normal || s->walls == (real)STILL) return u;
-  const vecs n = of(s->p.normal, ij);
-  return add(scale(only_below(ij, s->p.n, 1 + NO_LANES), u), scale(2 * dot(u, n), n));
+  if (!s->p.normal) return u;
+  return add(scale(only_below(ij, s->p.n, 1 + NO_LANES), u), scale(2 + NO_LANES, into_wall(s, ij)));
 }
 
 /* A_ij = -(1/alpha_i + 1/alpha_j) w_rr,  A_ii = max(-sum_j A_ij, A_max) + sum_walls A_ij
@@ -132,7 +139,7 @@ STAGE void assemble(const state *s, int i)
   }
   const real all = sum(full), to_walls = all - sum(open);
   const real dense = larger(s->p.rho[i] / s->rho0 - 1, 0);
-  s->surface[i] = all < s->a_max;
+  s->surface[i] = all < s->surface_below * s->a_max;
   s->diag[i] = larger(larger(all, s->a_max) - to_walls, (real)1e-6 * s->a_max);
   s->source[i] = s->rho0 / s->dt * (s->kappa * dense / (DIM * s->dt) - sum(div));
 }
@@ -208,16 +215,15 @@ STAGE void correct(const state *s, int i)
   s->p.p[i] = p;
 }
 
-/* v_i -= 1/alpha_i sum_walls w_ij [(v_i - v_j).n_j]^- n_j */
-STAGE void hold_off_walls(const state *s, int i)
+/* v_i -= d/alpha_i sum_walls w_ij ((v_i - v_j).n_j n_j).e_ij e_ij */
+STAGE void yield_to_walls(const state *s, int i)
 {
   vecs dv = NO_VECS;
   for_neighbours (s, i, ij) {
-    const vecs n = of(s->p.normal, ij);
-    const lanes approach = at_most(dot(diff(s->p.v, ij), n), 0);
-    dv = add(dv, scale(-s->share[i] * weight(&s->nb, ij) * approach, n));
+    const vecs e = direction(&s->nb, ij);
+    dv = add(dv, scale(weight(&s->nb, ij) * dot(into_wall(s, ij), e), e));
   }
-  s->hold[i] = sum(dv);
+  s->hold[i] = times(-s->factor * s->share[i], sum(dv));
 }
 STAGE void add_hold(const state *s, int i) { s->p.v[i] = plus(s->p.v[i], s->hold[i]); }
 
@@ -230,11 +236,9 @@ static status project(struct run *run, void *self)
   sweep_over(weigh, s, s->p.n_all);
   sweep(assemble, s);
   TRY(solve(run, s));
+  if (s->hold) sweep(yield_to_walls, s);
   sweep(correct, s);
-  if (s->p.n_all > s->p.n) {
-    sweep(hold_off_walls, s);
-    sweep(add_hold, s);
-  }
+  if (s->hold) sweep(add_hold, s);
   return OK;
 }
 
