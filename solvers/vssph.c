@@ -1,7 +1,7 @@
 /* Variational staggered SPH: every pair of particles carries a velocity along the line that joins
  * them, and the projection acts on those.
  * X. He, H. Wang, G. Wang, H. Wang, E. Wu, A Variational Staggered Particle Framework for
- * Incompressible Free-Surface Flows, arXiv:2001.09421 (2020).
+ * Incompressible Free-Surface Flows, arXiv:2001.09421 (2020), doi:10.48550/arXiv.2001.09421.
  *
  * With e_ij = (x_i - x_j)/r and wbar = w/alpha a full neighbourhood has sum_j wbar e e^T = 1/d, so
  *   sum_j wbar (p_i - p_j)/r^2   = -lap p/(2d)
@@ -246,7 +246,7 @@ static status project(struct run *run, void *self)
 
 STAGE void begin_shifting(const state *s, int i) { s->place[i] = s->p.x[i]; }
 
-/* max(rho_i/rho0 - 1, 0) / sum_j |W'_ij| */
+/* squeeze_i = max(rho_i/rho0 - 1, 0) / sum_j |W'_ij| */
 STAGE void compress(const state *s, int i)
 {
   s->squeeze[i] = 0;

@@ -100,7 +100,9 @@ static const struct solver *const strategies[] = {&solver_dual_sa, &solver_dual_
 
 static int density_of(int strategy, int at_real)
 {
-  return strategy == SB ? DENSITY_COPIED : strategy == SC && at_real ? DENSITY_REAL : DENSITY_VIRTUAL;
+  return strategy == SB              ? DENSITY_COPIED
+         : strategy == SC && at_real ? DENSITY_REAL
+                                     : DENSITY_VIRTUAL;
 }
 
 static void compare(const struct choices *o, int walls, unsigned long long seed)
