@@ -145,7 +145,7 @@ static status generate_nodes(struct run *run, state *s)
 {
   for (int d = 0; d < DIM; d++) {
     const unsigned long long draw = (unsigned long long)(run_step_number(run) * DIM + d);
-    const real part = s->offset == OFFSET_RANDOM ? (real)run_random(run, draw) : 0;
+    const real part = s->offset == (real)OFFSET_RANDOM ? (real)run_random(run, draw) : 0;
     s->origin.c[d] = part * s->virtual_spacing * s->dx;
   }
   if (s->p.n_all > INT_MAX / (STENCIL + 1))

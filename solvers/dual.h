@@ -127,10 +127,12 @@ STAGE void source(const state *s, int I)
   }
   const real at_nodes = larger(s->mass * sum(number) / s->rho0 - 1, 0);
   const real nearby = is_fluid ? larger(sum(crowd) / cf, 0) : 0;
-  const real dense = s->excess ? s->excess[I] : s->density == DENSITY_REAL ? nearby : at_nodes;
+  const real dense = s->excess                          ? s->excess[I]
+                     : s->density == (real)DENSITY_REAL ? nearby
+                                                        : at_nodes;
   const real scaled = s->unit_volume / s->solid_volume;
-  s->VI[I] =
-    s->volume == VOLUME_PRINTED ? scaled * sum(V2) : s->unit_volume * smaller(1, cI / SATURATION);
+  s->VI[I] = s->volume == (real)VOLUME_PRINTED ? scaled * sum(V2)
+                                               : s->unit_volume * smaller(1, cI / SATURATION);
   s->fluid[I] = is_fluid;
   s->source[I] = is_fluid ? sum(div) / s->dt + s->kappa * dense / sq(s->dt) : 0;
   if (s->lift) s->lift[I] = is_fluid ? times(1 / cf, sum(gradient)) : zero();
@@ -270,7 +272,7 @@ static status advance(struct run *run, state *s, status (*project)(struct run *,
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
-  return strcmp(field, "lift") != 0 || s->gradient == GRADIENT_ADJOINT;
+  return strcmp(field, "lift") != 0 || s->gradient == (real)GRADIENT_ADJOINT;
 }
 
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
