@@ -49,7 +49,7 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
 
 #define FIELDS(F)                                                                    \
   F(real, VI, VIRTUAL, STEP, "m^d", "volume of a virtual particle, Eq. (8)")         \
-  F(real, fluid, VIRTUAL, STEP, "1", "1, or 0 for a solid virtual particle")         \
+  F(real, wet, VIRTUAL, STEP, "1", "1, or 0 for a solid virtual particle")           \
   F(real, source, VIRTUAL, STEP, "1/s^2", "right-hand side D_I, Eqs. (11) and (13)") \
   F(real, diag, VIRTUAL, STEP, "m^3/kg/m^2",                                         \
     "diagonal of the matrix, Eq. (15), clamped to alpha_0")                          \
@@ -133,7 +133,7 @@ STAGE void source(const state *s, int I)
   const real scaled = s->unit_volume / s->solid_volume;
   s->VI[I] = s->volume == (real)VOLUME_PRINTED ? scaled * sum(V2)
                                                : s->unit_volume * smaller(1, cI / SATURATION);
-  s->fluid[I] = is_fluid;
+  s->wet[I] = is_fluid;
   s->source[I] = is_fluid ? sum(div) / s->dt + s->kappa * dense / sq(s->dt) : 0;
   if (s->lift) s->lift[I] = is_fluid ? times(1 / cf, sum(gradient)) : zero();
 }
@@ -145,11 +145,11 @@ STAGE void source(const state *s, int I)
 STAGE void matrix(const state *s, int I)
 {
   lanes full = NO_LANES, open = NO_LANES;
-  const real mine = s->fluid[I];
+  const real mine = s->wet[I];
   for_pairs (&s->among_virtual, I, IJ) {
     const lanes a =
       positive(IJ.r, 2 / s->rho0 * of(s->VI, IJ) * slope_over_r(&s->among_virtual, IJ));
-    const lanes to_fluid = mine * of(s->fluid, IJ) * a;
+    const lanes to_fluid = mine * of(s->wet, IJ) * a;
     keep(s->alpha, IJ, to_fluid);
     full += a;
     open += to_fluid;
@@ -169,8 +169,7 @@ STAGE void correct(const state *s, int i)
   vecs G = NO_VECS;
   lanes pressure = NO_LANES, weight = NO_LANES;
   for_pairs (&s->at_real, i, iJ) {
-    const lanes V = of(s->VI, iJ) * of(s->fluid, iJ), Vp = V * of(s->pI, iJ),
-                w = W(&s->at_real, iJ);
+    const lanes V = of(s->VI, iJ) * of(s->wet, iJ), Vp = V * of(s->pI, iJ), w = W(&s->at_real, iJ);
     G = add(G, scale(Vp, gradW(&s->at_real, iJ)));
     if (s->lift) G = add(G, scale(Vp * w, of(s->lift, iJ)));
     pressure += Vp * w;
@@ -276,6 +275,7 @@ static int uses(const void *self, const char *field)
 }
 
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
-#define DOES \
-  (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT))
+#define DOES                                                                                      \
+  (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT) | \
+   CAN(MOVING_WALLS) | CAN(EMITTERS))
 #endif

@@ -102,6 +102,7 @@ const struct solver solver_stress_point = {
   .state_size = sizeof(state),
   .start = start,
   .step = step,
+  .changed = NULL,
   .project = project,
   .max_dt = NULL,
   .uses = uses,

@@ -33,7 +33,7 @@
   "without surface energy, by default; velocities stay\n"                                          \
   "walls: particles that count with alpha_i; a pair with one has the wall's normal velocity, so "  \
   "that its part of the source counts twice and p_j = p_i; no friction; separation = 1 lets them " \
-  "also pull, the authors' programs have 0.1"
+  "also pull, the authors' programs have 0.1; a single layer (Akinci et al.) acts as free surface"
 
 enum { DIFFERENCE, SYMMETRIC };
 enum { OFF, ON };
@@ -79,9 +79,9 @@ typedef struct {
 /* --- weights of a pair; zero for i itself */
 
 /* w = 1 - q^4,  q = r/R */
-STAGE lanes weight(const struct pairs *nb, struct packet ij)
+STAGE lanes weight(const state *s, struct packet ij)
 {
-  const lanes q = ij.r * nb->kernel.inv_R;
+  const lanes q = ij.r * s->nb.kernel.inv_R;
   return only(ij, positive(ij.r, at_least(1 - q * q * (q * q), 0)));
 }
 /* w_r = w/r and w_rr = w/r^2 follow from this r */
@@ -93,7 +93,7 @@ STAGE lanes apart(const struct pairs *nb, struct packet ij)
 STAGE lanes mean_weight(const state *s, struct packet ij)
 {
   const real own = s->share[ij.i];
-  return (real)0.5 * (own + or_else(of(s->share, ij), own)) * weight(&s->nb, ij);
+  return (real)0.5 * (own + or_else(of(s->share, ij), own)) * weight(s, ij);
 }
 /* e_ij = (x_i - x_j)/r */
 STAGE vecs direction(const struct pairs *nb, struct packet ij)
@@ -107,7 +107,7 @@ STAGE void weigh(const state *s, int i)
   s->pressure[i] = s->d[i] = s->share[i] = 0;
   if (i >= s->p.n) return;
   lanes alpha = NO_LANES;
-  for_neighbours (s, i, ij) alpha += weight(&s->nb, ij);
+  for_neighbours (s, i, ij) alpha += weight(s, ij);
   s->share[i] = 1 / larger(sum(alpha), 1 / s->share_0);
 }
 
@@ -227,7 +227,7 @@ STAGE void yield_to_walls(const state *s, int i)
   vecs dv = NO_VECS;
   for_neighbours (s, i, ij) {
     const vecs e = direction(&s->nb, ij);
-    dv = add(dv, scale(weight(&s->nb, ij) * dot(into_wall(s, ij), e), e));
+    dv = add(dv, scale(weight(s, ij) * dot(into_wall(s, ij), e), e));
   }
   s->hold[i] = times(-s->factor * s->share[i], sum(dv));
 }
@@ -275,7 +275,7 @@ STAGE void shifted(const state *s, int i)
   lanes total = NO_LANES;
   for_neighbours (s, i, ij) {
     const vecs e = direction(&s->nb, ij);
-    const lanes r = apart(&s->nb, ij), w = weight(&s->nb, ij) / (r * r);
+    const lanes r = apart(&s->nb, ij), w = weight(s, ij) / (r * r);
     apart_from = add(apart_from, scale((own + of(s->squeeze, ij)) * slope(&s->nb, ij), e));
     one_side = add(one_side, scale(w, e));
     total += w;
@@ -368,6 +368,7 @@ const struct solver solver_vssph = {
   .state_size = sizeof(state),
   .start = start,
   .step = step,
+  .changed = NULL,
   .project = project,
   .max_dt = NULL,
   .uses = uses,
