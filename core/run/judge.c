@@ -5,9 +5,9 @@
 #include "run.h"
 
 const struct criterion criteria[NUM_CRITERIA] = {
-#define C(name, word, unit, limit, blow_up, meaning) {word, unit, limit, blow_up, meaning},
-  CRITERION_LIST(C)
-#undef C
+#define CRITERION(name, word, unit, limit, blow_up, meaning) {word, unit, limit, blow_up, meaning},
+#include "criteria.def"
+#undef CRITERION
 };
 
 static void note(struct run *run, enum criterion_number number, double value, double limit)

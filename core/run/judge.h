@@ -9,26 +9,12 @@
 extern "C" {
 #endif
 
-/* C(NAME, word, unit of the value, limit, blow-up, meaning), the worst first. A limit of 0 is one
- * that the run has of its own. Those of the steps (NOT_FINITE, SPEED) end the run; the others are
- * noted at samples. A leak is no blow-up. */
-#define CRITERION_LIST(C)                                                                         \
-  C(NOT_FINITE, "not-finite", "1", 0, 1, "a position or velocity is no number, or infinite")      \
-  C(GAVE_UP, "gave-up", "1", 0, 1, "the solver itself gave the run up")                           \
-  C(SPEED, "speed", "m/s", 0, 1,                                                                  \
-    "a particle is 10 times faster than any energy of the start "                                 \
-    "allows")                                                                                     \
-  C(OUTSIDE, "outside", "1", 0.05, 1, "part of the fluid more than a support outside the domain") \
-  C(DENSITY, "density", "rho0", 2, 1, "largest density; the limit is that of the start if more")  \
-  C(ENERGY, "energy", "1", 0.1, 1,                                                                \
-    "growth of kinetic and potential energy, where the system is "                                \
-    "closed, over what the fluid had at the start and has won by falling")                        \
-  C(VOLUME, "volume", "1", 0.1, 1, "relative change of volume, where no fluid flows in")          \
-  C(ITERATIONS, "iterations", "1", 0.05, 1, "part of the steps in which a solve hit its cap")     \
-  C(LEAK, "leak", "particles", 0, 0, "fluid more than a support outside the domain")
-#define C(name, word, unit, limit, blow_up, meaning) CRITERION_##name,
-enum criterion_number { CRITERION_LIST(C) NUM_CRITERIA };
-#undef C
+enum criterion_number {
+#define CRITERION(name, word, unit, limit, blow_up, meaning) CRITERION_##name,
+#include "criteria.def"
+#undef CRITERION
+  NUM_CRITERIA
+};
 struct criterion {
   const char *word, *unit;
   double limit;
