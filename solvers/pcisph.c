@@ -8,6 +8,9 @@
  * error by 1 - r theta/2, theta <= theta_max = 2.0 .. 7.5 (sph/lattice.h; supports of 2 to 3 dx).
  * The paper's r = 1 diverges where theta_max > 4: in 3-D beyond supports of 2.4 .. 2.9 dx.
  *
+ * Gradients stay those of the start of the step: an iteration may stall where one step has to take
+ * away more than some 10 % of compression.
+ *
  * walls: a mirrored pressure pushes twice for what a wall adds to rho*, which is no gradient of the
  * density, and feeds energy (default tank, 1 s: total energy 8 J with it, -2 J without). */
 #include "../core/solver.h"
@@ -27,11 +30,12 @@
   "warm start: from a part of the last step's p; the paper's p starts from 0\n"                    \
   "walls: particles of mass m that keep their velocity, without pressure, or with their "          \
   "neighbour's; the paper corrects positions and velocities there\n"                               \
-  "several fluids: delta is divided by the mean of light_j around i"
+  "several fluids: delta is that of the prototype in the fluid of i, or that of i where its "      \
+  "neighbours yield more; clamp = free fails where their densities differ 100-fold"
 
 enum { CLAMPED, FREE };
 enum { MEAN, LARGEST };
-enum { PLAIN, MIRRORED };
+enum { NONE, MIRRORED };
 
 #define PARAMS(P)                                                                                  \
   P(tolerance, 1e-3, 0, 1, "1", "relative compression at which to stop")                           \
@@ -41,13 +45,14 @@ enum { PLAIN, MIRRORED };
   P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
   P(relaxation, 0, 0, 4, "1", "factor on the paper's delta; 0: 2.8/theta_max of the lattice")      \
   P(clamp, CLAMPED, 0, 1, "clamped|free", "p >= 0, or also tension")                               \
-  P(walls, PLAIN, 0, 1, "plain|mirrored", "pressure of a wall: none, or its neighbour's")          \
+  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")    \
   P(warm_start, 0, 0, 1, "1", "part of its last p that a step starts from")
 
-#define FIELDS(F)                                                                     \
-  F(vec, ahead, ALL, STEP, "m", "predicted position x*")                              \
-  F(real, change, ALL, STEP, "Pa", "change of p in this iteration, 0 on walls")       \
-  F(real, rest, FLUID, STEP, "1", "min(rho_i/rho_0 - 1, 0) at the start of the step") \
+#define FIELDS(F)                                                                                  \
+  F(vec, ahead, ALL, STEP, "m", "predicted position x*")                                           \
+  F(real, change, ALL, STEP, "Pa", "change of p in this iteration, 0 on walls")                    \
+  F(real, rest, FLUID, STEP, "1", "min(rho_i/rho_0 - 1, 0) at the start of the step")              \
+  F(real, yield, FLUID, STEP, "kg^2/m^(2d+2)", "what replaces the prototype's, of several fluids") \
   F(real, last, FLUID, KEPT, "Pa", "p of the last step")
 
 typedef struct {
@@ -78,38 +83,25 @@ STAGE void begin(const state *s, int i)
   if (s->rest) s->rest[i] = smaller(s->p.rho[i] / s->rho0 - 1, 0);
 }
 
-/* What the neighbours of i add up to at the predicted positions. */
-struct prediction {
-  real rho;   /* rho*_i = sum_j m_j W(x*_i - x*_j)                    [kg/m^d] */
-  real light; /* mean of light_j, by what fluid j adds to rho*_i           [1] */
-};
-STAGE struct prediction predict(const state *s, int i)
+/* yield_i = light_i |sum_j m_j grad W_ij|^2 + sum_j light_j |m_j grad W_ij|^2 (constraint.h), or
+ * the prototype's in the fluid of i, whichever is larger */
+STAGE void find_yield(const state *s, int i)
 {
-  lanes rho = NO_LANES, fluid = NO_LANES, light = NO_LANES;
-  for_pairs (&s->next, i, ij) {
-    const lanes part = of(s->p.m, ij) * W(&s->next, ij);
-    rho += part;
-    if (s->p.light) {
-      fluid += only_below(ij, s->p.n, part);
-      light += light_of(&s->p, ij) * part;
-    }
-  }
-  struct prediction next;
-  next.rho = sum(rho);
-  next.light = s->p.light ? sum(light) / sum(fluid) : 1;
-  return next;
+  const struct constraint c = constraint_at(&s->p, &s->nb, i);
+  s->yield[i] = larger(c.yield, s->p.light[i] * s->spread);
 }
 
-/* Alg. 2   rho*_err = rho*_i - rho_0,   p_i += delta rho*_err
+/* Alg. 2   rho*_i = sum_j m_j W(x*_i - x*_j),   rho*_err = rho*_i - rho_0,   p_i += delta rho*_err
  * of which the sum p_i is clamped. Returns the relative error that counts. */
 STAGE real correct_pressure(const state *s, int i)
 {
-  const struct prediction next = predict(s, i);
-  const real gain = s->gain / next.light, p = s->p.p[i];
-  const real high = (next.rho - s->rho0) / s->rho0;
+  lanes rho = NO_LANES;
+  for_pairs (&s->next, i, ij) rho += of(s->p.m, ij) * W(&s->next, ij);
+  s->p.rho[i] = sum(rho);
+  const real gain = s->yield ? s->gain * s->spread / s->yield[i] : s->gain, p = s->p.p[i];
+  const real high = (s->p.rho[i] - s->rho0) / s->rho0;
   real wanted = larger(p + gain * high, 0);
   if (s->rest) wanted += smaller(p + gain * (high - s->rest[i]), 0);
-  s->p.rho[i] = next.rho;
   s->change[i] = wanted - p;
   return s->rest ? fabs(s->change[i]) / gain : larger(high, 0);
 }
@@ -118,7 +110,7 @@ STAGE real correct_pressure(const state *s, int i)
 STAGE lanes change_of(const state *s, struct packet ij)
 {
   const lanes change = of(s->change, ij);
-  if (s->walls == (real)PLAIN || s->p.n_all == s->p.n) return change;
+  if (s->wall_pressure == (real)NONE || s->p.n_all == s->p.n) return change;
   return change + s->change[ij.i] * (1 - only_below(ij, s->p.n, 1 + NO_LANES));
 }
 
@@ -200,6 +192,7 @@ static status step(struct run *run, void *self)
   s->next.xi = s->next.xj = s->ahead;
   sweep_over(predict_position, s, s->p.n_all);
   sweep(begin, s);
+  if (s->yield) sweep(find_yield, s);
   if (s->warm_start > 0) sweep(accelerate, s);
   TRY(correct(run, s));
   if (s->last) sweep(remember, s);
@@ -223,6 +216,7 @@ static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
   if (strcmp(field, "rest") == 0) return s->clamp == (real)FREE;
+  if (strcmp(field, "yield") == 0) return s->p.light != NULL;
   if (strcmp(field, "last") == 0) return s->warm_start > 0;
   return 1;
 }
@@ -240,8 +234,8 @@ const struct solver solver_pcisph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(BODIES) |
-         CAN(EMITTERS),
+         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) |
+         CAN(BODIES) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

@@ -9,11 +9,11 @@
  * on a lattice of rest density up to dt = 1.5 .. 2.8 h/c (h = R/2, supports of 2 to 3 dx). cfl =
  * 0.4 leaves room for what compression adds to c and disorder to w.
  *
- * Energy: with the summed density, plain walls and alpha = 0 the forces are the gradient of
- * sum_i m_i u(rho_i), du/drho = p/rho^2, whose drift is that of the time step. Mirrored pressures
- * push walls twice for what they add to rho_i: no energy has that gradient, and water at rest in a
- * tank heats up (default tank, 1 s: total energy 1187 J with them, -1 J without, whatever the
- * substep). */
+ * Energy: with the summed density, walls without pressure and alpha = 0 the forces are the gradient
+ * of sum_i m_i u(rho_i), du/drho = p/rho^2, whose drift is that of the time step. Mirrored
+ * pressures push walls twice for what they add to rho_i: no energy has that gradient, and water at
+ * rest in a tank heats up (default tank, 1 s: total energy 1187 J with them, -1 J without, whatever
+ * the substep). */
 #include "../core/solver.h"
 #include <string.h>
 
@@ -34,7 +34,7 @@
 
 enum { SUMMED, CONTINUITY };
 enum { BY_DENSITY, CLAMPED, FREE };
-enum { PLAIN, MIRRORED };
+enum { NONE, MIRRORED };
 
 #define PARAMS(P)                                                                                \
   P(c, 0, 0, 1e6, "m/s", "speed of sound; 0: 10 times the largest speed that the energy allows") \
@@ -42,7 +42,7 @@ enum { PLAIN, MIRRORED };
   P(density, SUMMED, 0, 1, "summed|continuity", "density as a sum, or by its rate of change")    \
   P(clamp, BY_DENSITY, 0, 2, "auto|clamped|free", "p >= 0, or any; auto: free by continuity")    \
   P(alpha, 0.01, 0, 10, "1", "Monaghan's artificial viscosity; 0: none")                         \
-  P(walls, PLAIN, 0, 1, "plain|mirrored", "pressure of a wall: none, or its neighbour's")        \
+  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")  \
   P(cfl, 0.4, 1e-3, 2, "1", "largest substep over h/c, h = R/2")
 
 #define FIELDS(F)                                                                          \
@@ -133,7 +133,7 @@ STAGE real tait(const state *s, real excess)
   const real p = s->rho0 * sq(s->c) / s->gamma * expm1(s->gamma * log1p(excess));
   return s->clamp == (real)CLAMPED ? larger(p, 0) : p;
 }
-/* p_i, its mean and p_i/rho_i^2 */
+/* p_i = Tait(rho_i),   p_i/rho_i^2, and p_i's part of the mean */
 STAGE void pressure(const state *s, int i)
 {
   const int summed = s->density == (real)SUMMED;
@@ -150,7 +150,7 @@ STAGE void pressure(const state *s, int i)
 STAGE lanes push_of(const state *s, struct packet ij)
 {
   const lanes push = of(s->push, ij);
-  if (s->walls == (real)PLAIN || s->p.n_all == s->p.n) return push;
+  if (s->wall_pressure == (real)NONE || s->p.n_all == s->p.n) return push;
   return push + s->push[ij.i] * (1 - only_below(ij, s->p.n, 1 + NO_LANES));
 }
 
@@ -234,7 +234,7 @@ static status step(struct run *run, void *self)
 
 /* rho_i = rho_0 */
 STAGE void full(const state *s, int i) { s->excess[i] = 0; }
-/* no pressure on walls, for good, and no density in the artificial viscosity */
+/* p = rho = 0 on walls, for good */
 STAGE void no_push(const state *s, int i)
 {
   s->push[i] = 0;
@@ -290,8 +290,8 @@ const struct solver solver_wcsph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(BODIES) |
-         CAN(EMITTERS),
+         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) |
+         CAN(BODIES) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

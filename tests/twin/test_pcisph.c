@@ -4,7 +4,7 @@
 #include "twin_solvers.h"
 
 enum { CLAMPED, FREE };
-enum { PLAIN, MIRRORED };
+enum { NONE, MIRRORED };
 enum { MEAN, LARGEST };
 struct choices {
   int iterations, clamp, walls;
@@ -28,9 +28,8 @@ static double twin_W_ahead(const struct cloud *c, int i, int j)
   return near[i][j] ? (double)kernel_W(&c->kernel, (real)sqrt(r2), DIM) : 0;
 }
 
-/* delta = 1/(beta (sum grad W . sum grad W + sum grad W . grad W)),   beta = dt^2 m^2 2/rho0^2, of
- * a particle in the middle of a lattice */
-static double twin_delta(const struct cloud *c)
+/* sum grad W . sum grad W + sum grad W . grad W of a particle in the middle of a lattice */
+static double twin_squares(const struct cloud *c)
 {
   const int deep = DIM == 3 ? 4 : 0;
   double sum[3] = {0}, squares = 0;
@@ -46,22 +45,30 @@ static double twin_delta(const struct cloud *c)
         }
       }
   for (int d = 0; d < DIM; d++) squares += sum[d] * sum[d];
-  const double beta = 2 * c->dt * c->dt * c->mass * c->mass / (c->rho0 * c->rho0);
-  return 1 / (beta * squares);
+  return squares;
 }
 
-/* rho*_i, and delta by the lightness around i */
-static double twin_predict(struct cloud *c, int i, double delta)
+/* delta = 1/(beta squares),   beta = dt^2 m^2 2/rho0^2; of several fluids by the larger of the
+ * lattice's squares in the fluid of i and those around i, each times its lightness */
+static double twin_delta(const struct cloud *c, int i)
 {
-  double light = 0, fluid = 0;
+  const double beta = 2 * c->dt * c->dt * c->mass * c->mass / (c->rho0 * c->rho0);
+  double own[DIM] = {0}, squares = 0;
+  if (!c->several) return 1 / (beta * twin_squares(c));
+  for (int j = 0; j < c->n_all; j++)
+    for (int d = 0; d < DIM; d++) {
+      own[d] += twin_grad(c, i, j, d);
+      squares += c->light[j] * twin_grad(c, i, j, d) * twin_grad(c, i, j, d);
+    }
+  for (int d = 0; d < DIM; d++) squares += c->light[i] * own[d] * own[d];
+  return 1 / (beta * fmax(squares, c->light[i] * twin_squares(c)));
+}
+
+/* rho*_i */
+static void twin_predict(struct cloud *c, int i)
+{
   c->rho[i] = 0;
-  for (int j = 0; j < c->n_all; j++) {
-    const double W = twin_W_ahead(c, i, j);
-    c->rho[i] += c->mass * W;
-    light += c->light[j] * W;
-    if (j < c->n) fluid += W;
-  }
-  return delta * fluid / light;
+  for (int j = 0; j < c->n_all; j++) c->rho[i] += c->mass * twin_W_ahead(c, i, j);
 }
 
 /* v and x* under the pressures q, by the gradients at x */
@@ -82,8 +89,7 @@ static void twin_accelerate(struct cloud *c, const struct choices *o, const doub
 /* Algorithm 2, with all of p applied anew in every iteration; p starts as `warm` times c->p */
 static void twin_step(struct cloud *c, const struct choices *o)
 {
-  static double p[TWIN_MOST], before[TWIN_MOST], v[TWIN_MOST][DIM];
-  const double delta = o->relaxation * twin_delta(c);
+  static double p[TWIN_MOST], before[TWIN_MOST], gain[TWIN_MOST], v[TWIN_MOST][DIM];
   twin_neighbours(c);
   twin_density(c);
   memcpy(before, c->rho, sizeof before);
@@ -91,18 +97,19 @@ static void twin_step(struct cloud *c, const struct choices *o)
     for (int d = 0; d < DIM; d++) c->v[i][d] += c->dt * c->gravity[d];
   if (c->xsph > 0) twin_viscosity(c, NULL);
   memcpy(v, c->v, sizeof v);
-  for (int i = 0; i < c->n; i++) p[i] = o->warm * c->p[i];
+  for (int i = 0; i < c->n; i++)
+    p[i] = o->warm * c->p[i], gain[i] = o->relaxation * twin_delta(c, i);
   for (int k = 0; k <= o->iterations; k++) {
     memcpy(c->v, v, sizeof v);
     for (int j = 0; j < c->n_all; j++)
       for (int d = 0; d < DIM; d++) ahead[j][d] = c->x[j][d] + c->dt * c->v[j][d];
     twin_accelerate(c, o, p);
     for (int i = 0; i < c->n; i++) {
-      const double gain = twin_predict(c, i, delta);
+      twin_predict(c, i);
       const double floor_ = fmin(before[i], c->rho0);
       if (k == o->iterations) continue;
-      const double up = p[i] + gain * (c->rho[i] - c->rho0);
-      const double down = p[i] + gain * (c->rho[i] - floor_);
+      const double up = p[i] + gain[i] * (c->rho[i] - c->rho0);
+      const double down = p[i] + gain[i] * (c->rho[i] - floor_);
       p[i] = up > 0 ? up : o->clamp == FREE && down < 0 ? down : 0;
     }
   }
@@ -118,7 +125,7 @@ static void compare_clouds(const struct cloud *start, int steps, struct choices 
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-    {"fixed_iterations", o.iterations}, {"clamp", o.clamp},     {"walls", o.walls},
+    {"fixed_iterations", o.iterations}, {"clamp", o.clamp},     {"wall_pressure", o.walls},
     {"relaxation", o.relaxation},       {"warm_start", o.warm}, {NULL, 0},
   };
   run = twin = *start;
@@ -141,26 +148,26 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 static void test_free_fluid(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, PLAIN, 1, 0});
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){1, CLAMPED, PLAIN, 0, 0});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, NONE, 1, 0});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){1, CLAMPED, NONE, 0, 0});
 }
 static void test_walls(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){3, CLAMPED, PLAIN, 1, 0});
+  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){3, CLAMPED, NONE, 1, 0});
   compare(1, KERNEL_SPIKY, 0, 1, (struct choices){3, CLAMPED, MIRRORED, 0.5, 0});
 }
 static void test_tension(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){4, FREE, PLAIN, 0.5, 0});
-  compare(0, KERNEL_WENDLAND4, 0, 1, (struct choices){3, FREE, PLAIN, 0, 0});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){4, FREE, NONE, 0.5, 0});
+  compare(0, KERNEL_WENDLAND4, 0, 1, (struct choices){3, FREE, NONE, 0, 0});
 }
 static void test_steps(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 3, (struct choices){2, CLAMPED, PLAIN, 0.5, 0.5});
-  compare(0, KERNEL_CUBIC, 0.05, 2, (struct choices){2, FREE, PLAIN, 0.5, 1});
+  compare(1, KERNEL_CUBIC, 0, 3, (struct choices){2, CLAMPED, NONE, 0.5, 0.5});
+  compare(0, KERNEL_CUBIC, 0.05, 2, (struct choices){2, FREE, NONE, 0.5, 1});
 }
 static void test_two_fluids(void **unused)
 {
@@ -168,7 +175,7 @@ static void test_two_fluids(void **unused)
   static struct cloud c;
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 37);
   cloud_mix(&c);
-  compare_clouds(&c, 1, (struct choices){3, CLAMPED, PLAIN, 1, 0});
+  compare_clouds(&c, 1, (struct choices){3, CLAMPED, NONE, 1, 0});
   compare_clouds(&c, 1, (struct choices){3, FREE, MIRRORED, 0.5, 0});
 }
 
@@ -182,6 +189,8 @@ static void stop(int measure, double tolerance, double *mean, double *largest, i
   const struct setting settings[] = {
     {"tolerance", tolerance}, {"measure", measure}, {"max_iterations", 1e5}, {NULL, 0}};
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 41);
+  for (int i = 0; i < c.n_all; i++) /* a few per cent too dense: what a step can take away */
+    for (int d = 0; d < DIM; d++) c.x[i][d] *= 1.0625;
   struct scene scene = cloud_scene(&c);
   set_values(&solver_pcisph, settings, values);
   assert_int_equal(run_create(&solver_pcisph, values, &scene, 0, &run), OK);
@@ -205,6 +214,7 @@ static void test_tolerance(void **unused)
   stop(MEAN, 0.9, &mean, &largest, &few);
   assert_int_equal(few, 3);
   stop(MEAN, 1e-3, &mean, &largest, &some);
+  if (getenv("TWIN_SHOW")) print_message("left: %g, at most %g\n", mean, largest);
   assert_true(mean <= 1e-3 * (1 + 1e-3) && mean > 5e-4 && largest > 2e-3);
   stop(LARGEST, 1e-3, &mean, &largest, &many);
   assert_true(largest <= 1e-3 * (1 + 1e-3) && largest > 5e-4);

@@ -4,7 +4,7 @@
 
 enum { SUMMED, CONTINUITY };
 enum { BY_DENSITY, CLAMPED, FREE };
-enum { PLAIN, MIRRORED };
+enum { NONE, MIRRORED };
 struct choices {
   int density, clamp, walls;
   double c, gamma, alpha, cfl;
@@ -121,8 +121,14 @@ static void compare_clouds(const struct cloud *start, int steps, struct choices 
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-    {"density", o.density}, {"clamp", o.clamp}, {"walls", o.walls}, {"c", o.c},
-    {"gamma", o.gamma},     {"alpha", o.alpha}, {"cfl", o.cfl},     {NULL, 0},
+    {"density", o.density},
+    {"clamp", o.clamp},
+    {"wall_pressure", o.walls},
+    {"c", o.c},
+    {"gamma", o.gamma},
+    {"alpha", o.alpha},
+    {"cfl", o.cfl},
+    {NULL, 0},
   };
   run = twin = *start;
   cloud_run(&run, &solver_wcsph, settings, steps);
@@ -145,32 +151,32 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 static void test_free_fluid(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){SUMMED, BY_DENSITY, PLAIN, 8, 7, 0, 0.25});
-  compare(0, KERNEL_SPIKY, 0, 1, (struct choices){SUMMED, FREE, PLAIN, 8, 1, 0, 0.5});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){SUMMED, BY_DENSITY, NONE, 8, 7, 0, 0.25});
+  compare(0, KERNEL_SPIKY, 0, 1, (struct choices){SUMMED, FREE, NONE, 8, 1, 0, 0.5});
 }
 static void test_walls(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){SUMMED, CLAMPED, PLAIN, 8, 7, 0, 0.25});
+  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){SUMMED, CLAMPED, NONE, 8, 7, 0, 0.25});
   compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){SUMMED, FREE, MIRRORED, 8, 7, 0, 0.25});
 }
 static void test_continuity(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){CONTINUITY, BY_DENSITY, PLAIN, 16, 7, 0, 0.25});
-  compare(0, KERNEL_CUBIC, 0, 3, (struct choices){CONTINUITY, CLAMPED, PLAIN, 16, 7, 0, 0.5});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){CONTINUITY, BY_DENSITY, NONE, 16, 7, 0, 0.25});
+  compare(0, KERNEL_CUBIC, 0, 3, (struct choices){CONTINUITY, CLAMPED, NONE, 16, 7, 0, 0.5});
 }
 static void test_artificial_viscosity(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_WENDLAND4, 0, 1, (struct choices){SUMMED, CLAMPED, PLAIN, 8, 7, 2, 0.25});
-  compare(1, KERNEL_CUBIC, 0, 2, (struct choices){CONTINUITY, FREE, PLAIN, 8, 7, 0.125, 0.5});
+  compare(1, KERNEL_WENDLAND4, 0, 1, (struct choices){SUMMED, CLAMPED, NONE, 8, 7, 2, 0.25});
+  compare(1, KERNEL_CUBIC, 0, 2, (struct choices){CONTINUITY, FREE, NONE, 8, 7, 0.125, 0.5});
 }
 static void test_scenes_viscosity(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0.05, 2, (struct choices){SUMMED, CLAMPED, PLAIN, 8, 7, 0, 0.5});
-  compare(1, KERNEL_CUBIC, 0.05, 1, (struct choices){CONTINUITY, FREE, PLAIN, 8, 7, 0, 0.25});
+  compare(0, KERNEL_CUBIC, 0.05, 2, (struct choices){SUMMED, CLAMPED, NONE, 8, 7, 0, 0.5});
+  compare(1, KERNEL_CUBIC, 0.05, 1, (struct choices){CONTINUITY, FREE, NONE, 8, 7, 0, 0.25});
 }
 
 /* The speed of sound that the energy asks: fluid alone, above still walls, towards fast ones. */
@@ -178,7 +184,7 @@ static void test_speed_of_sound(void **unused)
 {
   (void)unused;
   static struct cloud c;
-  const struct choices o = {CONTINUITY, FREE, PLAIN, 0, 7, 0, 0.4};
+  const struct choices o = {CONTINUITY, FREE, NONE, 0, 7, 0, 0.4};
   for (int walls = 0; walls <= 2; walls++) {
     cloud_make(&c, SIDE, walls > 0, KERNEL_CUBIC, 3);
     if (walls == 1)
@@ -195,9 +201,9 @@ static void test_two_fluids(void **unused)
   static struct cloud c;
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 23);
   cloud_mix(&c);
-  compare_clouds(&c, 1, (struct choices){SUMMED, CLAMPED, PLAIN, 8, 7, 0.5, 0.25});
+  compare_clouds(&c, 1, (struct choices){SUMMED, CLAMPED, NONE, 8, 7, 0.5, 0.25});
   compare_clouds(&c, 1, (struct choices){SUMMED, CLAMPED, MIRRORED, 8, 7, 0, 0.25});
-  compare_clouds(&c, 1, (struct choices){CONTINUITY, FREE, PLAIN, 0, 7, 0, 0.4});
+  compare_clouds(&c, 1, (struct choices){CONTINUITY, FREE, NONE, 0, 7, 0, 0.4});
 }
 
 /* --- sound waves on a periodic lattice, against the linearised equations */
@@ -351,8 +357,9 @@ static double twin_energy(const struct cloud *c, const struct choices *o)
 static double energy_error(struct choices o)
 {
   static struct cloud start, c;
-  const struct setting settings[] = {{"clamp", o.clamp}, {"walls", o.walls}, {"c", o.c},
-                                     {"alpha", 0},       {"cfl", o.cfl},     {NULL, 0}};
+  const struct setting settings[] = {{"clamp", o.clamp}, {"wall_pressure", o.walls},
+                                     {"c", o.c},         {"alpha", 0},
+                                     {"cfl", o.cfl},     {NULL, 0}};
   double most = 0;
   cloud_make(&start, SIDE, 1, KERNEL_WENDLAND2, 29);
   for (int j = start.n; j < start.n_all; j++) start.v[j][0] = 0;
@@ -370,16 +377,16 @@ static void test_energy(void **unused)
   (void)unused;
   for (int clamp = CLAMPED; clamp <= FREE; clamp++) {
     double error[2][2];
-    for (int walls = PLAIN; walls <= MIRRORED; walls++)
+    for (int walls = NONE; walls <= MIRRORED; walls++)
       for (int fine = 0; fine <= 1; fine++)
         error[walls][fine] =
           energy_error((struct choices){SUMMED, clamp, walls, 10, 7, 0, fine ? 0.005 : 0.04});
     if (getenv("TWIN_SHOW"))
       print_message("energy off by %.3g, %.3g with 1/8 of the substep; mirrored %.3g, %.3g\n",
-                    error[PLAIN][0], error[PLAIN][1], error[MIRRORED][0], error[MIRRORED][1]);
-    assert_true(error[PLAIN][1] < 0.2 * error[PLAIN][0] && error[PLAIN][0] < 0.01);
+                    error[NONE][0], error[NONE][1], error[MIRRORED][0], error[MIRRORED][1]);
+    assert_true(error[NONE][1] < 0.2 * error[NONE][0] && error[NONE][0] < 0.01);
     assert_true(error[MIRRORED][1] > 0.5 * error[MIRRORED][0]);
-    assert_true(error[MIRRORED][1] > 5 * error[PLAIN][1]);
+    assert_true(error[MIRRORED][1] > 5 * error[NONE][1]);
   }
 }
 
