@@ -447,8 +447,9 @@ static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD
                           fields_sc[] = FIELD_TABLE(FIELDS_SC);
 
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
-#define DOES \
-  (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT))
+#define DOES                                                                                      \
+  (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT) | \
+   CAN(VISCOSITY) | CAN(TENSION))
 
 #define STRATEGY(label, text, the_params, the_fields, the_step, the_project)             \
   {                                                                                      \

@@ -3,6 +3,7 @@
 #define RUN_H
 #include "../benchmark.h"
 #include "../solver.h"
+#include "forces.h"
 #include "store.h"
 #ifdef __cplusplus
 extern "C" {
@@ -33,7 +34,8 @@ struct run {
   struct {
     real *data;
     size_t capacity;
-  } coefficients[MAX_PAIR_LISTS];
+  } coefficients[MAX_PAIR_LISTS + 1]; /* the last is that of implicit viscosity */
+  struct tension tension;
   int *order;
   int order_capacity;
   unsigned long long *keys;
