@@ -4,22 +4,27 @@ STAGE real weight(const struct cg_vec *s, int i)
 {
   return s->light ? s->mass[i] / s->light[i] : s->mass[i];
 }
-/* 1/w_i sum_j c_ij x_ij x_ij^T (u_i - u_j) */
+/* 1/w_i sum_j c_ij (u_i - u_j),  or  1/w_i sum_j c_ij x_ij x_ij^T (u_i - u_j) */
 STAGE vec pull(const struct cg_vec *s, const vec *u, int i)
 {
   vecs total = NO_VECS;
-  for_pairs (&s->rows, i, ij)
-    total = add(total, scale(kept(s->coef, ij) * dot(ij.x, diff(u, ij)), ij.x));
+  if (s->central)
+    for_pairs (&s->rows, i, ij)
+      total = add(total, scale(kept(s->coef, ij) * dot(ij.x, diff(u, ij)), ij.x));
+  else
+    for_slots(&s->rows, i, ij) total = add(total, scale(kept(s->coef, ij), diff(u, ij)));
   return times(1 / weight(s, i), sum(total));
 }
-/* diag = 1 + 1/w_i sum_j c_ij |x_ij|^2 / DIM;  r = b - A v for v = b;  d = r / diag, 0 if given */
+/* diag = 1 + 1/w_i sum_j c_ij, or 1 + 1/w_i sum_j c_ij |x_ij|^2 / DIM;  r = b - A v for v = b;
+ * d = r / diag, 0 where v is given */
 STAGE void residual(const struct cg_vec *s, int i)
 {
   s->d[i] = zero();
   if (i >= s->n) return;
   lanes stiff = NO_LANES;
-  for_pairs (&s->rows, i, ij) stiff += kept(s->coef, ij) * ij.r * ij.r;
-  s->diag[i] = 1 + sum(stiff) / (DIM * weight(s, i));
+  for_pairs (&s->rows, i, ij)
+    stiff += kept(s->coef, ij) * (s->central ? ij.r * ij.r / DIM : 1 + NO_LANES);
+  s->diag[i] = 1 + sum(stiff) / weight(s, i);
   s->r[i] = times(-1, pull(s, s->v, i));
   s->d[i] = times(1 / s->diag[i], s->r[i]);
 }

@@ -1,6 +1,7 @@
 /* cg_vec.h - conjugate gradients with Jacobi's preconditioner for velocities that pull at each
- * other along the lines between particles:
- *   (A v)_i = v_i + 1/w_i sum_j c_ij x_ij x_ij^T (v_i - v_j),   c_ij = c_ji >= 0,
+ * other, in all components or along the lines between particles:
+ *   (A v)_i = v_i + 1/w_i sum_j c_ij (v_i - v_j),               c_ij = c_ji >= 0,
+ *   (A v)_i = v_i + 1/w_i sum_j c_ij x_ij x_ij^T (v_i - v_j)    if central,
  * symmetric and positive definite in <a, b> = sum_i w_i a_i . b_i. Its smallest eigenvalue is 1, so
  * that a residual bounds the error: |v - A^-1 b| <= |b - A v|. */
 #ifndef CG_VEC_H
@@ -14,6 +15,7 @@ extern "C" {
 
 struct cg_vec {
   int n, n_all;      /* unknown are v_0 .. v_n-1; v_n .. v_n_all-1 are given */
+  int central;       /* see above */
   struct pairs rows; /* the list that coef belongs to, with its positions */
   const real *coef;  /* c_ij [slots] */
   const real *mass;  /* w_i = mass_i / light_i [n] */

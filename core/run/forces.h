@@ -9,11 +9,13 @@ extern "C" {
 #endif
 
 enum viscosity_form { VISCOSITY_EXPLICIT, VISCOSITY_IMPLICIT };
+enum viscosity_pairs { VISCOSITY_CENTRAL, VISCOSITY_FULL };
 enum wall_slip { WALL_SLIP_NONE, WALL_SLIP_FREE };
 
 struct viscosity {
-  real mu;  /* dynamic viscosity of the one fluid; several have p.mu [Pa s] */
-  int slip; /* enum wall_slip */
+  real mu;   /* dynamic viscosity of the one fluid; several have p.mu [Pa s] */
+  int pairs; /* enum viscosity_pairs */
+  int slip;  /* enum wall_slip */
 };
 
 /* v += dt F/m with the viscous forces F of the velocities now: stable for dt below about 0.1 rho

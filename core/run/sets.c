@@ -232,7 +232,8 @@ static status solve_viscosity(struct run *run, struct viscosity viscosity)
 static status apply_viscosity(struct run *run)
 {
   const struct scene_params *c = &run->scene.common;
-  const struct viscosity viscosity = {(real)c->viscosity, (int)c->wall_slip};
+  const struct viscosity viscosity = {(real)c->viscosity, (int)c->viscosity_pairs,
+                                      (int)c->wall_slip};
   if (c->viscosity_form == VISCOSITY_IMPLICIT) return solve_viscosity(run, viscosity);
   viscosity_explicit(run->view, viscosity);
   return OK;

@@ -1,8 +1,10 @@
 /* Viscosity of Newtonian fluids.
- *   explicit   Monaghan, Rep. Prog. Phys. 68 (2005) 1703, Sec. 8.2, as the Laplacian of Weiler
+ *   explicit   Monaghan, Rep. Prog. Phys. 68 (2005) 1703, with the Laplacian of the implicit form
  *   implicit   M. Weiler, D. Koschier, M. Brand, J. Bender, A Physically Consistent Implicit
  *              Viscosity Solver for SPH Fluids, Comput. Graph. Forum 37(2) (2018) 145,
  *              doi:10.1111/cgf.13349
+ *   full       either with the Laplacian of J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136
+ *              (1997) 214, doi:10.1006/jcph.1997.5776, in place of pairs that pull along their line
  * Differences from the paper:
  *   0.01 h^2 is not added to |x_ij|^2: no term is singular without it (it takes 1 to 4 % away)
  *   mu_ij = 2 mu_i mu_j/(mu_i + mu_j) between fluids (Cleary & Monaghan 1999), mu_i at walls
@@ -10,9 +12,14 @@
  *     wall_slip = free leaves them out
  *   Jacobi's preconditioner with the mean of each block's diagonal, not the inverse block
  *   starts from v*, not from v* plus the last step's change
- * On a square or cubic lattice the pairs along the axes are too few: with the cubic spline and R =
- * 2.5 dx a shear along an axis has 0.83 of mu (2-D; 3-D: 0.87), one along a diagonal 1.17 (1.15);
- * R = 4 dx: 0.97 and 1.02. The mean over directions is 1.00, which disordered particles have. */
+ * How much of mu a shear along an axis shows (cubic spline; decay of a wave in a box at rest, 2-D):
+ *                                R = 2 dx   2.5 dx   3 dx   4 dx
+ *   central, square lattice          0.66     0.83   0.94   0.97    (along a diagonal 1.36 .. 1.02)
+ *   central, displaced by 0.25 dx    0.64     0.82   0.91   0.97
+ *   full, square lattice             1.01     1.00   1.00   1.00
+ *   full, displaced by 0.25 dx       0.86     0.94   0.97   0.98
+ * central keeps angular momentum, and a rigid rotation is no friction, also at a free surface; full
+ * does neither. Walls that hold the fluid do so in first order of dx. */
 #include "forces.h"
 
 #include <string.h>
@@ -46,12 +53,14 @@ STAGE lanes viscosity_of(const struct viscous *s, int i, struct packet ij)
   return only_below(ij, s->p.n, both) + own - only_below(ij, s->p.n, own);
 }
 
-/* Eq. (6)   F_i = V_i mu lap v_i = -sum_j f_ij x_ij (x_ij . v_ij),
- *           f_ij = 2 (d + 2) mu_ij V_i V_j |W'_ij| / r_ij^3 */
+/* F_i = V_i mu lap v_i = -sum_j f_ij x_ij (x_ij . v_ij),  f_ij = 2 (d+2) mu_ij V_i V_j
+ * |W'_ij|/r_ij^3 full: F_i = -sum_j f_ij v_ij,                           f_ij = 2 mu_ij V_i V_j
+ * |W'_ij|/r_ij */
 STAGE lanes friction(const struct viscous *s, int i, struct packet ij)
 {
-  const real own = 2 * (DIM + 2) * s->p.V[i];
-  const lanes r2 = at_least(ij.r * ij.r, (real)1e-12 * sq(s->nb.kernel.R));
+  const int central = s->viscosity.pairs == VISCOSITY_CENTRAL;
+  const real own = 2 * (central ? DIM + 2 : 1) * s->p.V[i];
+  const lanes r2 = central ? at_least(ij.r * ij.r, (real)1e-12 * sq(s->nb.kernel.R)) : 1 + NO_LANES;
   return positive(ij.r,
                   own * viscosity_of(s, i, ij) * volume_of(s, ij) * slope_over_r(&s->nb, ij) / r2);
 }
@@ -60,8 +69,12 @@ STAGE lanes friction(const struct viscous *s, int i, struct packet ij)
 STAGE void drag(const struct viscous *s, int i)
 {
   vecs F = NO_VECS;
-  for_neighbours (s, i, ij)
-    F = add(F, scale(-friction(s, i, ij) * dot(ij.x, diff(s->p.v, ij)), ij.x));
+  for_neighbours (s, i, ij) {
+    const vecs v = diff(s->p.v, ij);
+    const lanes f = friction(s, i, ij);
+    F = add(F, s->viscosity.pairs == VISCOSITY_CENTRAL ? scale(-f * dot(ij.x, v), ij.x)
+                                                       : scale(-f, v));
+  }
   s->p.dv[i] = times(s->dt * light(&s->p, i) / s->p.m[i], sum(F));
 }
 STAGE void add_drag(const struct viscous *s, int i) { s->p.v[i] = plus(s->p.v[i], s->p.dv[i]); }
@@ -89,7 +102,7 @@ void viscosity_explicit(const struct view *view, struct viscosity viscosity)
   sweep(add_drag, &s);
 }
 
-/* Eq. (8)   (m_i/light_i) v_i + dt sum_j f_ij x_ij (x_ij . v_ij) = (m_i/light_i) v*_i */
+/* (m_i/light_i) v_i + dt sum_j f_ij x_ij (x_ij . v_ij) = (m_i/light_i) v*_i */
 struct cg_result viscosity_implicit(const struct view *view, struct viscosity viscosity, real *coef,
                                     double tolerance, int max_iterations)
 {
@@ -100,6 +113,7 @@ struct cg_result viscosity_implicit(const struct view *view, struct viscosity vi
   sweep(couple, &s);
   cg.n = s.p.n;
   cg.n_all = s.p.n_all;
+  cg.central = viscosity.pairs == VISCOSITY_CENTRAL;
   cg.rows = s.nb;
   cg.coef = coef;
   cg.mass = s.p.m;

@@ -22,6 +22,7 @@ extern "C" {
   P(xsph_rate, 0, 0, 1e6, "m/s", "XSPH as a rate: adds xsph_rate dt/(R/2) to xsph")       \
   P(viscosity, 0, 0, 1e9, "Pa s", "dynamic viscosity; explicit: dt < 0.1 rho0 dx^2/it")   \
   P(viscosity_form, 1, 0, 1, "explicit|implicit", "forces of old or of new velocities")   \
+  P(viscosity_pairs, 0, 0, 1, "central|full", "pairs pull along their line, or on all of v") \
   P(viscosity_tolerance, 1e-6, 0, 1, "1", "implicit: largest relative error of velocity") \
   P(wall_slip, 0, 0, 1, "none|free", "do walls hold a viscous fluid, or let it slip?")    \
   P(tension, 0, 0, 1e9, "N/m", "surface tension")                                         \
