@@ -41,7 +41,7 @@ struct tension {
 struct tension tension_make(int form, double sigma, const struct kernel *kernel, double dx,
                             double mass);
 
-/* v += dt F/m. Needs p.m, rho, V, dv, slant; He: and colour. */
+/* v += dt F/m. Needs p.m, V, dv, slant; He: and colour. */
 void tension_apply(const struct view *view, struct tension tension);
 
 #ifdef __cplusplus

@@ -26,7 +26,7 @@ struct tense {
   struct tension tension;
 };
 
-/* Akinci Eq. (2) over 32/(pi R^3)   s(q) = (1-q)^3 q^3,  for q <= 1/2: 2 (1-q)^3 q^3 - 1/64 */
+/* Akinci Eq. (2) over 32/(pi R^3): s(q) = (1-q)^3 q^3,  for q <= 1/2: 2 (1-q)^3 q^3 - 1/64 */
 STAGE lanes spline(lanes q)
 {
   const lanes u = at_least(1 - q, 0), a = u * u * u * q * q * q;
@@ -58,19 +58,18 @@ STAGE void slant(const struct tense *s, int i)
   s->p.slant[i] = times(s->p.colour ? 1 / s->p.colour[i] : 1, sum(n));
 }
 
-/* Akinci Eq. (1), (3), (4), (5)   K_ij = 2 rho_0/(rho_i + rho_j),
+/* Akinci   K_ij = 2 rho_0/(rho_i + rho_j),   rho = m/V; V = 0 leaves walls out
  *   dv_i = -dt light_i sum_j K_ij (cohesion m_j s(r_ij/R) x_ij/r_ij + normals (n_i - n_j)) */
 STAGE void cohere(const struct tense *s, int i)
 {
-  const real R = s->nb.kernel.R, inv_R = s->nb.kernel.inv_R, rho = s->p.rho[i];
+  const real R = s->nb.kernel.R, V = s->p.V[i], m = s->p.m[i];
   vecs a = NO_VECS;
   for_neighbours (s, i, ij) {
-    const lanes q = ij.r * inv_R, near = only(ij, only_below(ij, s->p.n, 1 + NO_LANES));
-    const lanes K = 2 * s->rho0 * positive(1 - q, near) / (rho + of(s->p.rho, ij));
-    const lanes pull = s->tension.cohesion * of(s->p.m, ij) * spline(q);
-    const lanes over_r = pull / at_least(ij.r, (real)1e-6 * R);
-    a = add(a, scale(K, add(scale(over_r, ij.x),
-                            scale(s->tension.normals * R + NO_LANES, diff(s->p.slant, ij)))));
+    const lanes q = ij.r * s->nb.kernel.inv_R, Vj = of(s->p.V, ij), mj = of(s->p.m, ij);
+    const lanes K = only(ij, 2 * s->rho0 * V * positive(1 - q, Vj) / (m * Vj + mj * V));
+    const lanes pull = s->tension.cohesion * mj * spline(q) / at_least(ij.r, (real)1e-6 * R);
+    const vecs level = scale(s->tension.normals * R + NO_LANES, diff(s->p.slant, ij));
+    a = add(a, scale(K, add(scale(pull, ij.x), level)));
   }
   s->p.dv[i] = times(-s->dt * light(&s->p, i), sum(a));
 }
@@ -106,10 +105,11 @@ void tension_apply(const struct view *view, struct tension tension)
 
 /* --- the tension of a flat surface */
 
-enum { MOST_LAYERS = 64 };
+/* Layers, in supports: forces reach 4 deep, gradients 3, colours 2, densities 1; each is filled as
+ * deep as the next one looks. */
+enum { DEEP = 4, MOST_REACH = 11, MOST_LAYERS = (DEEP + 3) * MOST_REACH + 1 };
 
-/* A half-space of the lattice: layer k lies (k + 1/2) dx deep; those below `reach` are alike but
- * for what they see of the layers above. */
+/* A half-space of the lattice: layer k lies (k + 1/2) dx deep. */
 struct half_space {
   struct kernel kernel;
   double dx, mass, rho0;
@@ -183,7 +183,7 @@ static double virial_energy(const struct half_space *h, const struct bond *b)
 
 static void fill_half_space(struct half_space *h)
 {
-  const int last = 4 * h->reach;
+  const int last = (DEEP + 3) * h->reach;
   for (int k = 0; k <= last; k++) {
     h->rho[k] = h->mass * sum_bonds(h, k, bond_W);
     h->V[k] = h->mass / h->rho[k];
@@ -198,7 +198,7 @@ static void fill_half_space(struct half_space *h)
 static double tension_of(const struct half_space *h, bond_term *virial)
 {
   double total = 0;
-  for (int k = 0; k < 2 * h->reach; k++) total += sum_bonds(h, k, virial);
+  for (int k = 0; k < DEEP * h->reach; k++) total += sum_bonds(h, k, virial);
   return total / (DIM == 3 ? h->dx * h->dx : h->dx);
 }
 
@@ -213,7 +213,7 @@ struct tension tension_make(int form, double sigma, const struct kernel *kernel,
   h.mass = mass;
   h.form = form;
   h.reach = (int)ceil((double)kernel->R / dx - 1e-6);
-  if (4 * h.reach >= MOST_LAYERS) h.reach = MOST_LAYERS / 4 - 1;
+  if (h.reach > MOST_REACH) h.reach = MOST_REACH; /* supports are at most 10 dx */
   fill_half_space(&h);
   if (form == TENSION_HE) {
     t.energy = (real)(sigma / tension_of(&h, virial_energy));
