@@ -12,22 +12,22 @@
 #include <limits.h>
 #include <string.h>
 
-#define DIFFERENCES                                                                                \
-  "Eqs. (9), (14), (15) use |W'|: as printed the Laplacian has the wrong sign\n"                   \
-  "Eq. (13) is divided once more by dt; kappa is a number of order 0.1 (0 without gravity)\n"      \
-  "Eq. (8) printed, or saturated at the lattice's volume (default): the printed one lets the "     \
-  "interior of a jittered lattice act as free surface\n"                                           \
-  "V_I is scaled by (virtual spacing / dx)^d, or the pressure comes out multiplied by it\n"        \
-  "CG runs in the V-weighted inner product, where the printed matrix is symmetric\n"               \
-  "Eq. (16) printed, or the exact adjoint of Eq. (11) (gradient = adjoint)\n"                      \
-  "Eq. (17) acts on the velocity, on approach only: as printed it adds m/s to Pa/m\n"              \
-  "Algorithm 1 starts its last line from v*, not from v^n\n"                                       \
-  "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: "    \
-  "removed, with a Neumann condition\n"                                                            \
-  "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones "         \
-  "compression hides\n"                                                                            \
-  "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the "     \
-  "kernel sum of a perfect lattice ripples about rho0, which alone raises a spurious pressure\n"   \
+#define DIFFERENCES                                                                              \
+  "Eqs. (9), (14), (15) use |W'|: as printed the Laplacian has the wrong sign\n"                 \
+  "Eq. (13) is divided once more by dt; kappa is a number of order 0.1 (0 without gravity)\n"    \
+  "Eq. (8) printed, or saturated at the lattice's volume (default): the printed one lets the "   \
+  "interior of a jittered lattice act as free surface\n"                                         \
+  "V_I is scaled by (virtual spacing / dx)^d, or the pressure comes out multiplied by it\n"      \
+  "CG runs in the V-weighted inner product, where the printed matrix is symmetric\n"             \
+  "Eq. (16) printed, or the exact adjoint of Eq. (11) (gradient = adjoint)\n"                    \
+  "Eq. (17) acts on the velocity, on approach only: as printed it adds m/s to Pa/m\n"            \
+  "Algorithm 1 starts its last line from v*, not from v^n\n"                                     \
+  "virtual particles without fluid near them (less than 0.1 % of their kernel sum) are solid: "  \
+  "removed, with a Neumann condition\n"                                                          \
+  "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones "       \
+  "compression hides\n"                                                                          \
+  "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the "   \
+  "kernel sum of a perfect lattice ripples about rho0, which alone raises a spurious pressure\n" \
   "S.C: nearest node and a stencil of 13 (2-D) or 33 (3-D) nodes; keys of 64 bits"
 
 enum { VOLUME_PRINTED, VOLUME_SATURATED };
@@ -449,7 +449,7 @@ static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
 #define DOES                                                                                      \
   (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT) | \
-   CAN(VISCOSITY) | CAN(TENSION))
+   CAN(VISCOSITY) | CAN(TENSION) | CAN(MOVING_WALLS) | CAN(EMITTERS))
 
 #define STRATEGY(label, text, the_params, the_fields, the_step, the_project)             \
   {                                                                                      \

@@ -46,9 +46,10 @@ static void explain_features(const struct run *run)
     const char *name;
   } abilities[] = {ABILITY_LIST(A)};
 #undef A
-  const unsigned asked = scene_asks(&run->scene), features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) |
-                                                             CAN(PERIODIC) | CAN(VISCOSITY) |
-                                                             CAN(TENSION);
+  const unsigned asked = scene_asks(&run->scene),
+                 features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC) | CAN(VISCOSITY) |
+                            CAN(TENSION) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(BODIES) |
+                            CAN(EMITTERS);
   printf("features absent:");
   int absent = 0;
   for (int k = 0; k < NUM_ABILITIES; k++)

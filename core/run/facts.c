@@ -42,6 +42,7 @@ static void add_series(struct facts *f, const char *name, const char *unit, cons
 void facts_update(struct facts *f, const struct plan *plan, const struct run *run,
                   const struct record *r)
 {
+  f->run.particles = run->view->p.n;
   f->run.steps = run->step;
   f->run.time_end = run->time;
   f->run.series.columns = f->series;

@@ -20,6 +20,14 @@ unsigned scene_asks(const struct scene *scene)
   if (scene->common.xsph > 0 || scene->common.xsph_rate > 0) asks |= CAN(XSPH);
   if (scene->common.viscosity > 0) asks |= CAN(VISCOSITY);
   if (scene->common.tension > 0) asks |= CAN(TENSION);
+  if (scene->num_bodies > 0) asks |= CAN(MOVING_WALLS);
+  for (int k = 0; k < scene->num_bodies; k++)
+    if (scene->body[k].density > 0) asks |= CAN(BODIES);
+  for (int k = 0; k < scene->num_fluids; k++) {
+    if (scene->fluid[k].rho0 != scene->common.rho0) asks |= CAN(FLUIDS);
+    if (scene->fluid[k].viscosity > 0) asks |= CAN(VISCOSITY);
+  }
+  if (scene->num_emitters > 0) asks |= CAN(EMITTERS);
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
     if (scene->period.c[d] > 0)
@@ -40,15 +48,19 @@ const char *solver_lacks(const struct solver *solver, unsigned asks)
   return NULL;
 }
 
-static unsigned fields_needed(const struct solver *solver, unsigned asks,
-                              const struct scene_params *c)
+static unsigned fields_needed(const struct solver *solver, unsigned asks, const struct scene *scene)
 {
+  const struct scene_params *c = &scene->common;
   unsigned needs = solver->needs | HAS(x) | HAS(v) | HAS(id);
   if (asks & (CAN(XSPH) | CAN(VISCOSITY) | CAN(TENSION)))
     needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
   if (asks & CAN(VISCOSITY) && c->viscosity_form == VISCOSITY_IMPLICIT)
     needs |= HAS(search) | HAS(pull) | HAS(stiff);
+  if (asks & CAN(VISCOSITY) && scene->num_fluids > 0) needs |= HAS(mu);
   if (asks & CAN(TENSION)) needs |= HAS(slant) | (c->tension_form == TENSION_HE ? HAS(colour) : 0);
+  if (asks & CAN(FLUIDS)) needs |= HAS(light) | HAS(fluid);
+  if (asks & CAN(MOVING_WALLS)) needs |= HAS(body) | HAS(arm);
+  if (asks & CAN(BODIES)) needs |= HAS(m) | HAS(p) | HAS(rho) | HAS(dv);
   return needs;
 }
 
@@ -63,10 +75,27 @@ static void set_params(const struct solver *solver, const double *values, void *
 /* Copy one array of the scene into [begin, begin + n) of a field that may not exist. */
 static void upload(struct store *store, const char *name, const void *from, int begin, int n)
 {
-  struct store_field *f = store_find(store, name);
+  struct store_field *f = store_public(store, name);
   if (f && n > 0)
     memory_from_host((char *)f->data + f->row.bytes * (size_t)begin, from,
                      f->row.bytes * (size_t)n);
+}
+
+/* light_i = rho0/rho0_i and the number of its fluid, with `number` [all] and `label` [n] as room.
+ */
+static void upload_fluids(struct run *run, real *number, int *label)
+{
+  const struct scene *s = &run->scene;
+  if (s->num_fluids == 0) return;
+  for (int i = 0; i < s->n; i++) {
+    label[i] = i < s->num_fluid_of ? s->fluid_of[i] : 0;
+    number[i] = (real)(s->common.rho0 / s->fluid[label[i]].rho0);
+  }
+  upload(&run->store, "fluid", label, 0, s->n);
+  for (int i = 0; i < s->n_wall; i++) number[s->n + i] = 0;
+  upload(&run->store, "light", number, 0, s->n + s->n_wall);
+  for (int i = 0; i < s->n; i++) number[i] = (real)s->fluid[label[i]].viscosity;
+  upload(&run->store, "mu", number, 0, s->n);
 }
 
 static status upload_scene(struct run *run)
@@ -92,6 +121,7 @@ static status upload_scene(struct run *run)
   upload(&run->store, "normal", number, 0, s->n);
   for (int i = 0; i < s->n; i++) label[i] = i;
   upload(&run->store, "id", label, 0, s->n);
+  upload_fluids(run, number, label);
   free(number);
   free(label);
   return OK;
@@ -194,13 +224,16 @@ status run_create(const struct solver *solver, const double *solver_values, stru
   run->dt = run->scene.common.dt;
   fill_view(run);
   set_params(solver, solver_values, run->state);
-  run->needs = fields_needed(solver, asks, &run->scene.common);
+  run->needs = fields_needed(solver, asks, &run->scene);
   if (asks & CAN(TENSION)) run->tension = tension_of_scene(run);
   TRY(check_memory(run));
   run->speed_limit = SPEED_MARGIN * reference_speed(&run->scene);
   TRY(store_open(&run->store, solver, run->needs, run->scene.n, run->scene.n_wall, run->state));
   TRY(upload_scene(run));
   positions_bounds(run->scene.wall_x, run->scene.n_wall, &run->wall_low, &run->wall_high);
+  run->num_labels = run->scene.n;
+  TRY(walls_weigh(run));
+  TRY(bodies_start(run));
   return solver->start ? solver->start(run, run->state) : OK;
 }
 
@@ -239,7 +272,10 @@ status run_step(struct run *run)
 {
   begin_step(run);
   const enum phase before = clock_enter(PHASE_SOLVER);
-  const status result = run->solver->step(run, run->state);
+  status result = run->scene.num_emitters ? run_emit(run) : OK;
+  bodies_drive(run, run->time + run->dt / 2);
+  if (result == OK) result = run->solver->step(run, run->state);
+  if (result == OK) bodies_push(run, run->dt);
   run->time += run->dt;
   clock_enter(before);
   return finish_step(run, result);
@@ -301,6 +337,7 @@ void run_free(struct run *run)
 {
   if (!run) return;
   if (run->solver->stop && run->state) run->solver->stop(run, run->state);
+  bodies_free(run);
   particle_search.pair_list_free(&run->neighbours);
   for (int k = 0; k < MAX_PAIR_LISTS; k++) particle_search.pair_list_free(&run->list[k]);
   for (int k = 0; k <= MAX_PAIR_LISTS; k++)
