@@ -22,7 +22,7 @@ struct viscosity {
  * dx^2/mu. Needs p.m, V, dv. */
 void viscosity_explicit(const struct view *view, struct viscosity viscosity);
 
-/* v += dt F/m with those of the velocities at the end. Needs besides p.search, pull, stiff, and
+/* v += dt F/m with those of the velocities at the end. Needs besides p.mu_dir, mu_op, mu_diag, and
  * `coef` with room for the slots of view->nb. */
 struct cg_result viscosity_implicit(const struct view *view, struct viscosity viscosity, real *coef,
                                     double tolerance, int max_iterations);

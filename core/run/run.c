@@ -55,7 +55,7 @@ static unsigned fields_needed(const struct solver *solver, unsigned asks, const 
   if (asks & (CAN(XSPH) | CAN(VISCOSITY) | CAN(TENSION)))
     needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
   if (asks & CAN(VISCOSITY) && c->viscosity_form == VISCOSITY_IMPLICIT)
-    needs |= HAS(search) | HAS(pull) | HAS(stiff);
+    needs |= HAS(mu_dir) | HAS(mu_op) | HAS(mu_diag);
   if (asks & CAN(VISCOSITY) && scene->num_fluids > 0) needs |= HAS(mu);
   if (asks & CAN(TENSION)) needs |= HAS(slant) | (c->tension_form == TENSION_HE ? HAS(colour) : 0);
   if (asks & CAN(FLUIDS)) needs |= HAS(light) | HAS(fluid);

@@ -120,8 +120,8 @@ struct cg_result viscosity_implicit(const struct view *view, struct viscosity vi
   cg.light = s.p.light;
   cg.v = s.p.v;
   cg.r = s.p.dv;
-  cg.d = s.p.search;
-  cg.q = s.p.pull;
-  cg.diag = s.p.stiff;
+  cg.d = s.p.mu_dir;
+  cg.q = s.p.mu_op;
+  cg.diag = s.p.mu_diag;
   return cg_vec_solve(&cg, tolerance, max_iterations);
 }
