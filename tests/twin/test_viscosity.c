@@ -162,6 +162,31 @@ static void test_xsph_rate(void **unused)
   assert_same_change(&run, &twin, &before);
 }
 
+/* dv_i = b sum_j V_ij (v_j - v_i) W_ij 2 m_j/(m_i + m_j) with true masses */
+static void test_xsph_of_two_fluids(void **unused)
+{
+  (void)unused;
+  static struct cloud run, twin, before;
+  struct scene_params p;
+  memset(&p, 0, sizeof p);
+  p.xsph_rate = 2;
+  cloud_make(&run, SIDE, 1, KERNEL_CUBIC, 25);
+  memset(run.gravity, 0, sizeof run.gravity);
+  before = twin = run;
+  still_run(&run, &solver_still_two, &p);
+  twin_density(&twin);
+  const double rate = p.xsph_rate * twin.dt / ((double)twin.kernel.R / 2);
+  for (int i = 0; i < twin.n; i++)
+    for (int j = 0; j < twin.n; j++) {
+      const double mi = 1 / light_of_label(i), mj = 1 / light_of_label(j);
+      const double V = 2 * twin.mass / (twin.rho[i] + twin.rho[j]);
+      for (int d = 0; d < DIM; d++)
+        twin.v[i][d] +=
+          rate * V * (before.v[j][d] - before.v[i][d]) * twin_W(&twin, i, j) * 2 * mj / (mi + mj);
+    }
+  assert_same_change(&run, &twin, &before);
+}
+
 /* --- laws */
 
 static void moments(const struct cloud *c, const struct choices *o, double momentum[DIM],
@@ -425,10 +450,10 @@ static void test_stiff(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_explicit),   cmocka_unit_test(test_implicit),
-    cmocka_unit_test(test_xsph_rate),  cmocka_unit_test(test_conservation),
-    cmocka_unit_test(test_shear_wave), cmocka_unit_test(test_couette),
-    cmocka_unit_test(test_stiff),
+    cmocka_unit_test(test_explicit),     cmocka_unit_test(test_implicit),
+    cmocka_unit_test(test_xsph_rate),    cmocka_unit_test(test_xsph_of_two_fluids),
+    cmocka_unit_test(test_conservation), cmocka_unit_test(test_shear_wave),
+    cmocka_unit_test(test_couette),      cmocka_unit_test(test_stiff),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
