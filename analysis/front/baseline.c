@@ -120,6 +120,13 @@ static json_t *series_of(const json_t *facts, const json_t *curves)
   return series;
 }
 
+static const char *date_of(const json_t *facts)
+{
+  const char *date =
+    json_string_value(json_object_get(json_object_get(facts, "provenance"), "date"));
+  return date ? date : "";
+}
+
 static status take_run(json_t *runs, const char *path, const json_t *curves)
 {
   json_error_t error;
@@ -131,10 +138,14 @@ static status take_run(json_t *runs, const char *path, const json_t *curves)
                       facts ? "there is no key 'solver'" : error.text);
   }
   key = key_of(facts);
-  if (key)
+  const char *date = date_of(facts),
+             *known =
+               json_string_value(json_object_get(json_object_get(runs, key ? key : ""), "date"));
+  if (key && !(known && strcmp(known, date) > 0)) /* the latest of several builds */
     json_object_set_new(runs, key,
-                        json_pack("{s:O, s:o, s:o}", "status", json_object_get(facts, "status"),
-                                  "values", values_of(facts), "series", series_of(facts, curves)));
+                        json_pack("{s:s, s:O, s:o, s:o}", "date", date, "status",
+                                  json_object_get(facts, "status"), "values", values_of(facts),
+                                  "series", series_of(facts, curves)));
   json_decref(facts);
   free(key);
   return key ? OK : status_set(ERR_MEMORY, "out of memory");

@@ -338,6 +338,7 @@ void run_free(struct run *run)
   if (!run) return;
   if (run->solver->stop && run->state) run->solver->stop(run, run->state);
   bodies_free(run);
+  visits_free(run);
   particle_search.pair_list_free(&run->neighbours);
   for (int k = 0; k < MAX_PAIR_LISTS; k++) particle_search.pair_list_free(&run->list[k]);
   for (int k = 0; k <= MAX_PAIR_LISTS; k++)

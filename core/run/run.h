@@ -6,6 +6,7 @@
 #include "bodies.h"
 #include "forces.h"
 #include "store.h"
+#include "visits.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -37,6 +38,7 @@ struct run {
     size_t capacity;
   } coefficients[MAX_PAIR_LISTS + 1]; /* the last is that of implicit viscosity */
   struct tension tension;
+  struct pair_visits *visits; /* NULL: pairs are not counted */
   int *order;
   int order_capacity;
   unsigned long long *keys;

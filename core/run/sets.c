@@ -112,6 +112,7 @@ static status build_list(struct run *run, struct pair_list *list, enum pair_set 
   list->pairs.kernel = run->view->nb.kernel;
   list->pairs.xi = xi;
   list->pairs.xj = xj;
+  if (result == OK) result = visits_renew(run, list);
   *out = list->pairs;
   return result;
 }

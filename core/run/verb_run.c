@@ -322,6 +322,7 @@ status verb_run(const struct options *o)
   TRY(option_whole("--threads", o->threads, 1, 1024, omp_get_max_threads(), &threads));
   TRY(option_whole("--frames", o->frames, 1, 1000000, 50, &s.frames));
   omp_set_num_threads((int)threads);
+  visits_wanted = o->count_pairs;
   h5_start(); /* HDF5 crashes where it finds no memory to start in */
   int other_dim = 0;
   status result = plan_make(o, &s.plan, &other_dim);
