@@ -18,8 +18,9 @@ struct viscosity {
   int slip;  /* enum wall_slip */
 };
 
-/* v += dt F/m with the viscous forces F of the velocities now: stable for dt below about 0.1 rho
- * dx^2/mu. Needs p.m, V, dv. */
+/* v += dt F/m with the viscous forces F of the velocities now: stable on a lattice for mu dt/(rho
+ * dx^2) below 0.14, 0.19, 0.25 at R = 2, 2.5, 3 dx; full: below 0.32, 0.47, 0.65. Needs p.m, V, dv.
+ */
 void viscosity_explicit(const struct view *view, struct viscosity viscosity);
 
 /* v += dt F/m with those of the velocities at the end. Needs besides p.mu_dir, mu_op, mu_diag, and
