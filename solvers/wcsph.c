@@ -48,7 +48,7 @@ enum { NONE, MIRRORED };
 #define FIELDS(F)                                                                          \
   F(real, excess, FLUID, KEPT, "1", "rho_i/rho_0 - 1, carried by the continuity equation") \
   F(real, mean, FLUID, KEPT, "Pa", "p_i, averaged over the substeps so far")               \
-  F(vec, dv, FLUID, STEP, "m/s", "change of velocity in this substep")                     \
+  F(vec, change, FLUID, STEP, "m/s", "change of velocity in this substep")                 \
   F(real, push, ALL, STEP, "m^5/(kg s^2)", "p_i/rho_i^2, 0 on walls")                      \
   F(real, dense, ALL, STEP, "kg/m^d", "rho_i as artificial viscosity reads it, 0 on walls")
 
@@ -177,9 +177,9 @@ STAGE void accelerate(const state *s, int i)
     if (s->alpha > 0) push += viscous(s, ij);
     a = add(a, scale(of(s->p.m, ij) * push, gradW(&s->nb, ij)));
   }
-  s->dv[i] = times(-s->dt * light(&s->p, i), sum(a));
+  s->change[i] = times(-s->dt * light(&s->p, i), sum(a));
 }
-STAGE void kick(const state *s, int i) { s->p.v[i] = plus(s->p.v[i], s->dv[i]); }
+STAGE void kick(const state *s, int i) { s->p.v[i] = plus(s->p.v[i], s->change[i]); }
 
 static status substep(struct run *run, state *s)
 {
@@ -291,7 +291,7 @@ const struct solver solver_wcsph = {
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
          CAN(PERIODIC) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) |
-         CAN(BODIES) | CAN(EMITTERS),
+         CAN(BODIES) | CAN(EMITTERS) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

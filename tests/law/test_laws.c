@@ -226,18 +226,35 @@ static void bits(void **unused)
   omp_set_num_threads(2);
 }
 
+/* A field of a solver's own is not called as a public one, nor twice: files name them all. */
+static void names_of_fields(void **unused)
+{
+  (void)unused;
+#define FIELD(type, name, where, life, unit, meaning) #name,
+  static const char *const taken[] = {
+#include "../../core/particles/fields.def"
+  };
+#undef FIELD
+  FOR_SOLVERS(solver, 0)
+  {
+    for (int k = 0; k < solver->num_fields; k++) {
+      const char *name = solver->fields[k].name;
+      int same = 0;
+      for (int j = 0; j < k; j++) same += strcmp(solver->fields[j].name, name) == 0;
+      for (int j = 0; j < NUM_FIELDS; j++) same += strcmp(taken[j], name) == 0;
+      if (same) fail_msg("%s: the field '%s' is there already", solver->name, name);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(rest_stays_at_rest),
-    cmocka_unit_test(free_fall_is_exact),
-    cmocka_unit_test(lonely_particle_goes_straight),
-    cmocka_unit_test(galilean),
-    cmocka_unit_test(mirror),
-    cmocka_unit_test(rotation),
-    cmocka_unit_test(relabelling),
-    cmocka_unit_test(momentum),
-    cmocka_unit_test(bits),
+    cmocka_unit_test(names_of_fields),    cmocka_unit_test(rest_stays_at_rest),
+    cmocka_unit_test(free_fall_is_exact), cmocka_unit_test(lonely_particle_goes_straight),
+    cmocka_unit_test(galilean),           cmocka_unit_test(mirror),
+    cmocka_unit_test(rotation),           cmocka_unit_test(relabelling),
+    cmocka_unit_test(momentum),           cmocka_unit_test(bits),
   };
   return cmocka_run_group_tests_name("laws " SPHBENCH_VARIANT, tests, NULL, NULL);
 }
