@@ -40,8 +40,10 @@
   ".9\n"                                                                                           \
   "Eq. (21): with a safeguard on the residual or on Psi (Peng et al. 2018), or none\n"             \
   "clamp: free lets lambda < 1 attract\n"                                                          \
-  "walls: particles of mass m that do not move and press as i does (P_j = P_i, K_j = K_i); Psi "   \
-  "does not hold that term, so that it is no objective beside walls\n"                             \
+  "walls: particles of mass m that do not move and have a P_j and K_j like any other, which "      \
+  "belong to Psi; with P_j = P_i instead (mirrored) Psi is no objective any more and water in a "  \
+  "tank gains energy, with P_j = 0 (still) it sinks towards the walls; the paper clips against "   \
+  "triangles\n"                                                                                    \
   "several fluids: m_i = rho_0i dx^d in Psi, and a stiffness of their own"
 
 enum { B0, B1, B2 };
@@ -51,14 +53,17 @@ enum { PLAIN, CHEBYSHEV, ANDERSON };
 enum { GUARD_NONE, GUARD_PSI, GUARD_RESIDUAL };
 enum { OWN, COMMON };
 enum { CLAMPED, FREE };
+enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
 #define DEFAULT_K ((real)1e6)
+#define DEFAULT_N 10
 #define MOST_RHO ((real)0.995)
 
 #define PARAMS(P)                                                                                \
   P(energy, B0, 0, 2, "B0|B1|B2", "bulk energy B(lambda), Eqs. (15), (16), (17)")                \
   P(form, EQ_14, 0, 1, "eq12|eq14", "non-conservative or conservative substitution")             \
-  P(fixed_iterations, 10, 0, 1e6, "1", "number of iterations N; 0: by tolerance")                \
-  P(tolerance, 1e-3, 0, 1, "dx", "eta: r.m.s. of h^2/m grad Psi at which to stop")               \
+  P(fixed_iterations, 0, 0, 1e6, "1",                                                            \
+    "number of iterations N; 0: by tolerance, or 10 without one")                                \
+  P(tolerance, 0, 0, 1, "dx", "eta: r.m.s. of h^2/m grad Psi at which to stop; 0: none")         \
   P(max_iterations, 1000, 1, 1e6, "1", "largest number of iterations with a tolerance")          \
   P(K, 0, 0, 1e15, "Pa", "bulk modulus; 0: from mu, or 1e6 Pa if that is 0, too")                \
   P(mu, 0, 0, 1e15, "J", "energy per particle K dx^d (2-D: J/m); 0: from K")                     \
@@ -66,12 +71,14 @@ enum { CLAMPED, FREE };
   P(stiff_ratio, 1, 0, 1e6, "1", "modulus of fluids after the first and beyond split, over K")   \
   P(split, 1e30, -1e30, 1e30, "m", "fluid that starts at larger x has K stiff_ratio")            \
   P(clamp, CLAMPED, 0, 1, "clamped|free", "lambda >= 1, or also attraction")                     \
+  P(walls, WALLS_ORDINARY, 0, 2, "ordinary|still|mirrored",                                      \
+    "P_j of a wall particle: K B'(lambda_j), 0, or P_i")                                         \
   P(step_length, STEP_NONE, 0, 2, "none|printed|repaired", "Eq. (20); B0 needs none")            \
   P(diagonal, OWN, 0, 1, "own|common", "1 + S_i/beta, or 1 + max S/beta: conserves momentum")    \
   P(beta, 1, 0.1, 10, "1", "what S is divided by in the diagonal; 3 converges 2.8 times faster") \
   P(acceleration, PLAIN, 0, 2, "plain|chebyshev|anderson", "Eqs. (14), (22), (21)")              \
-  P(radius, 0, 0, 0.9999, "1", "spectral radius rho of Eq. (23); 0: matched to S")               \
-  P(depth, 1, 1, 5, "1", "n of Eq. (21), an integer")                                            \
+  P(spectral_radius, 0, 0, 0.9999, "1", "spectral radius rho of Eq. (23); 0: matched to S")      \
+  P(history, 1, 1, 5, "1", "n of Eq. (21), an integer")                                          \
   P(safeguard, GUARD_RESIDUAL, 0, 2, "none|psi|residual", "what an accelerated step may not raise")
 
 #define HISTORY(F, k)                                                          \
@@ -79,16 +86,17 @@ enum { CLAMPED, FREE };
   F(vec, dg##k, FLUID, STEP, "m", "Anderson: a difference of proposed shifts") \
   F(real, dp##k, FLUID, STEP, "Pa", "Anderson: a difference of proposed pressures")
 
-#define FIELDS(F)                                                                              \
-  F(real, bulk, ALL, KEPT, "Pa", "bulk modulus K_i of the particle; not read on walls")        \
-  F(real, press, ALL, STEP, "Pa", "P_i = K_i B'(lambda_i) of this iterate; not read on walls") \
-  F(real, diag, FLUID, STEP, "1", "S_i, the sum of A+ in Eq. (14)")                            \
-  F(vec, pull, FLUID, STEP, "m", "sum of A (x_j - x_i) in Eq. (14)")                           \
-  F(vec, shift, FLUID, STEP, "m", "x_i - x*_i of this iterate")                                \
-  F(vec, next, FLUID, STEP, "m", "x_i - x*_i of the next iterate")                             \
-  F(real, next_p, FLUID, STEP, "Pa", "pressure that acted by the next iterate")                \
-  F(vec, last, FLUID, STEP, "m", "Chebyshev: x_i - x*_i of the iterate before")                \
-  F(real, last_p, FLUID, STEP, "Pa", "Chebyshev: pressure of the iterate before")              \
+#define FIELDS(F)                                                                           \
+  F(real, bulk, ALL, KEPT, "Pa", "bulk modulus K_i of the particle")                        \
+  F(real, press, ALL, STEP, "Pa", "P_i = K_i B'(lambda_i) of this iterate")                 \
+  F(real, diag, FLUID, STEP, "1", "S_i, the sum of A+ in Eq. (14)")                         \
+  F(vec, pull, FLUID, STEP, "m", "sum of A (x_j - x_i) in Eq. (14)")                        \
+  F(vec, shift, FLUID, STEP, "m", "x_i - x*_i of this iterate")                             \
+  F(vec, next, FLUID, STEP, "m", "x_i - x*_i of the next iterate")                          \
+  F(real, next_p, FLUID, STEP, "Pa", "pressure that acted by the next iterate")             \
+  F(vec, last, FLUID, STEP, "m", "Chebyshev: x_i - x*_i of the iterate before")             \
+  F(real, last_p, FLUID, STEP, "Pa", "Chebyshev: pressure of the iterate before")           \
+  F(real, wet, WALL, STEP, "1/m^d", "sum of W over the fluid that a wall particle touches") \
   HISTORY(F, 1) HISTORY(F, 2) HISTORY(F, 3) HISTORY(F, 4) HISTORY(F, 5)
 
 typedef struct {
@@ -107,8 +115,8 @@ STAGE real slope_of_energy(const state *s, real e)
   if (s->energy == (real)B1) return e * (2 + e);
   return e * (3 + e * (3 + e));
 }
-/* B0 = (lambda - 1)^2 / 2,   B1 = (lambda^3 - 1)/3 - lambda + 1,   B2 = (lambda^4 - 1)/4 - lambda +
- * 1 */
+/* B0 = (lambda - 1)^2 / 2,   B1 = (lambda^3 - 1)/3 - lambda + 1,
+ * B2 = (lambda^4 - 1)/4 - lambda + 1 */
 STAGE real energy_of(const state *s, real e)
 {
   if (s->energy == (real)B0) return e * e / 2;
@@ -134,23 +142,49 @@ STAGE real own_energy(const state *s, int i)
   return inner(s->shift[i], s->shift[i]) / 2 + bulk;
 }
 
-/* Eq. (5), (6)   lambda_i = rho_i/rho_0,   rho_i = sum_j m_j W_ij
- * Eq. (13)       P_i = K_i B'(lambda_i): what A+_ij + A-_ij of particle i have in common
- * Eq. (7)        returns psi_i / (rho_0 V0/dt^2) */
-STAGE real compress(const state *s, int i)
+/* Eq. (5), (6)   rho_i = sum_j m_j W_ij */
+STAGE real density(const state *s, int i)
 {
   lanes rho = NO_LANES;
   for_neighbours (s, i, ij) rho += of(s->p.m, ij) * W(&s->nb, ij);
-  s->p.rho[i] = sum(rho);
+  return sum(rho);
+}
+
+/* Eq. (13)   P_i = K_i B'(lambda_i): what A+_ij + A-_ij of particle i have in common
+ * Eq. (7)    returns psi_i / (rho_0 V0/dt^2) */
+STAGE real compress(const state *s, int i)
+{
+  s->p.rho[i] = density(s, i);
   s->press[i] = modulus(s, i) * slope_of_energy(s, compression(s, i));
   return own_energy(s, i) / light(&s->p, i);
 }
+/* wet_k = sum_j W_kj over the fluid: does it reach the k-th wall particle?   P_k = 0 where not */
+STAGE void reach(const state *s, int k)
+{
+  const int i = s->p.n + k;
+  lanes fluid = NO_LANES;
+  for_neighbours (s, i, ij) fluid += only_below(ij, s->p.n, W(&s->nb, ij));
+  s->wet[i] = sum(fluid);
+  s->press[i] = 0;
+}
+/* Eq. (13)   P_k = K_k B'(lambda_k) of the k-th wall particle, which stays and does not attract
+ * Eq. (7)    returns mu_k B(lambda_k) / (rho_0 V0/dt^2) */
+STAGE real compress_wall(const state *s, int k)
+{
+  const int i = s->p.n + k;
+  if (s->wet[i] <= 0) return 0;
+  const real e = larger(density(s, i) / s->rho0 - 1, 0);
+  s->press[i] = modulus(s, i) * slope_of_energy(s, e);
+  return sq(s->dt) / s->rho0 * modulus(s, i) * energy_of(s, e);
+}
 
-/* a_j of fluid, a_i at walls; 0 in Eq. (12) */
+/* a_j; at walls that of the wall particle, 0, or a_i; 0 in Eq. (12) */
 STAGE lanes partner(const state *s, struct packet ij, real mine, lanes its)
 {
   if (s->form == (real)EQ_12) return NO_LANES;
-  return mine + only_below(ij, s->p.n, its - mine);
+  if (s->walls == (real)WALLS_ORDINARY) return its;
+  const real wall = s->walls == (real)WALLS_MIRRORED ? mine : 0;
+  return wall + only_below(ij, s->p.n, its - wall);
 }
 
 /* Eq. (13)   A+_ij = -K_i a_ij,   A+_ij + A-_ij = P_i a_ij,   a_ij = dt^2 m_j/rho_0^2 W'_ij/r_ij
@@ -228,7 +262,7 @@ static struct anderson anderson_of(const state *s)
   vec *const df[] = {s->df1, s->df2, s->df3, s->df4, s->df5};
   vec *const dg[] = {s->dg1, s->dg2, s->dg3, s->dg4, s->dg5};
   real *const dp[] = {s->dp1, s->dp2, s->dp3, s->dp4, s->dp5};
-  a.depth = (int)s->depth;
+  a.depth = (int)s->history;
   a.field.n = s->p.n * DIM;
   a.field.g = (real *)s->next;
   a.x = (const real *)s->shift;
@@ -266,7 +300,7 @@ static void chebyshev_step(const state *s, struct accelerator *a)
   const struct chebyshev_field p = {n, s->p.p, s->next_p, s->last_p};
   struct chebyshev *c = &a->chebyshev;
   const real matched = 1 - 1 / (1 + s->common / s->beta);
-  if (c->k == 0) c->rho = s->radius > 0 ? s->radius : smaller(matched, MOST_RHO);
+  if (c->k == 0) c->rho = s->spectral_radius > 0 ? s->spectral_radius : smaller(matched, MOST_RHO);
   chebyshev_next(c);
   chebyshev_apply(c, x);
   chebyshev_apply(c, p);
@@ -281,6 +315,16 @@ static void accelerate(const state *s, struct accelerator *a, double psi, double
 
 /* --- Algorithm 1 */
 
+/* P of every particle, and Psi / (rho_0 V0/dt^2) */
+static status press_all(struct run *run, state *s, double *psi)
+{
+  double of_walls = 0;
+  sum_over(compress, s, s->p.n, psi);
+  if (s->wet) sum_over(compress_wall, s, s->p.n_all - s->p.n, &of_walls);
+  *psi += of_walls;
+  return *psi < HUGE_VAL ? OK : run_diverged(run, "the energy Psi is not a number");
+}
+
 /* Find positions that minimise Psi, starting from x*. */
 static status minimise(struct run *run, state *s)
 {
@@ -292,8 +336,7 @@ static status minimise(struct run *run, state *s)
   if (s->acceleration == (real)ANDERSON) a.anderson = anderson_of(s);
   sweep(begin, s);
   for (;; k++) {
-    sum_over(compress, s, s->p.n, &psi);
-    if (!(psi < HUGE_VAL)) return run_diverged(run, "the energy Psi is not a number");
+    TRY(press_all(run, s, &psi));
     if (k == most) break;
     largest_over(gather, s, s->p.n, &largest);
     s->common = (real)largest;
@@ -314,6 +357,10 @@ static status step(struct run *run, void *self)
   TRY(run_forces(run)); /* v* = v + dt f */
   TRY(run_move(run));   /* x* = x + dt v* */
   TRY(run_neighbours(run));
+  if (s->wet) {
+    TRY(run_wall_rows(run));
+    sweep_over(reach, s, s->p.n_all - s->p.n);
+  }
   TRY(minimise(run, s));
   sweep(finish, s);
   return OK;
@@ -362,6 +409,7 @@ static status start(struct run *run, void *self)
 {
   state *s = (state *)self;
   TRY(resolve_stiffness(s));
+  if (s->fixed_iterations <= 0 && s->tolerance <= 0) s->fixed_iterations = DEFAULT_N;
   if (s->bulk) sweep_over(give_modulus, s, s->p.n_all);
   return run_neighbours(run); /* the first step's viscosity */
 }
@@ -369,10 +417,11 @@ static status start(struct run *run, void *self)
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
+  if (strcmp(field, "wet") == 0) return s->walls == (real)WALLS_ORDINARY && s->form == (real)EQ_14;
   if (strcmp(field, "bulk") == 0) return s->stiff_ratio != 1;
   if (strncmp(field, "last", 4) == 0) return s->acceleration == (real)CHEBYSHEV;
   if (field[0] == 'd' && field[1] != 'i')
-    return s->acceleration == (real)ANDERSON && field[2] - '0' <= (int)s->depth;
+    return s->acceleration == (real)ANDERSON && field[2] - '0' <= (int)s->history;
   return 1;
 }
 

@@ -78,10 +78,10 @@ static double minimise(struct cloud *c, struct choices o)
     {"form", o.form},
     {"diagonal", o.diagonal},
     {"acceleration", o.acceleration},
-    {"depth", o.depth},
+    {"history", o.depth},
     {"safeguard", o.guard},
     {"beta", o.beta},
-    {"radius", o.radius},
+    {"spectral_radius", o.radius},
     {NULL, 0},
   };
   cloud_run(c, &solver_sisph, settings, 1);
