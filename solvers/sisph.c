@@ -14,8 +14,9 @@
  * Pressure: an iterate feels P_i = K_i B'(lambda_i), of which the step to it took the share 1/D_i.
  * p_i follows the same averages (also those of the accelerations), so that
  *   dv_i = -dt sum_j m_j (p_i + p_j)/rho_0^2 grad W_ij:
- * exact with one common diagonal and without the motion of grad W in the step, close to it with
- * each particle's own, and P_i itself when converged. */
+ * exact with one common diagonal but for the motion of grad W in the step; with each particle's own
+ * good where S varies little (20 % off in a block of 6^3, which is nearly all surface); P_i itself
+ * when converged. */
 #include "../core/linear/anderson.h"
 #include "../core/linear/chebyshev.h"
 #include "../core/solver.h"
@@ -32,7 +33,8 @@
   "stiffness: K [Pa] or mu [J] (mu = K dx^d); by default K = 1e6 Pa, which is the paper's mu = 1 " \
   "J at dx = 0.01 m in 3-D\n"                                                                      \
   "support: the scene's; the paper's 1.2 dx keeps its volume badly\n"                              \
-  "Eq. (14) conserves momentum only when converged; diagonal = common does always\n"               \
+  "Eq. (14) conserves momentum only when converged; diagonal = common does always, and keeps "     \
+  "soft fluid beside stiff calm, which own diagonals agitate until they converge\n"                \
   "diagonal: 1 + S/beta, beta = 1 in the paper\n"                                                  \
   "Eq. (20) as printed cannot move a particle that only its neighbours press (psi_i = 0); "        \
   "repaired: alpha_i = 1 where rho_i <= rho_0\n"                                                   \
