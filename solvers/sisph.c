@@ -73,7 +73,7 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
   P(stiff_ratio, 1, 0, 1e6, "1", "modulus of fluids after the first and beyond split, over K")   \
   P(split, 1e30, -1e30, 1e30, "m", "fluid that starts at larger x has K stiff_ratio")            \
   P(clamp, CLAMPED, 0, 1, "clamped|free", "lambda >= 1, or also attraction")                     \
-  P(walls, WALLS_ORDINARY, 0, 2, "ordinary|still|mirrored",                                      \
+  P(wall_pressure, WALLS_ORDINARY, 0, 2, "ordinary|still|mirrored",                              \
     "P_j of a wall particle: K B'(lambda_j), 0, or P_i")                                         \
   P(step_length, STEP_NONE, 0, 2, "none|printed|repaired", "Eq. (20); B0 needs none")            \
   P(diagonal, OWN, 0, 1, "own|common", "1 + S_i/beta, or 1 + max S/beta: conserves momentum")    \
@@ -177,15 +177,15 @@ STAGE real compress_wall(const state *s, int k)
   if (s->wet[i] <= 0) return 0;
   const real e = larger(density(s, i) / s->rho0 - 1, 0);
   s->press[i] = modulus(s, i) * slope_of_energy(s, e);
-  return sq(s->dt) / s->rho0 * modulus(s, i) * energy_of(s, e);
+  return s->p.m[i] / s->mass * sq(s->dt) / s->rho0 * modulus(s, i) * energy_of(s, e);
 }
 
 /* a_j; at walls that of the wall particle, 0, or a_i; 0 in Eq. (12) */
 STAGE lanes partner(const state *s, struct packet ij, real mine, lanes its)
 {
   if (s->form == (real)EQ_12) return NO_LANES;
-  if (s->walls == (real)WALLS_ORDINARY) return its;
-  const real wall = s->walls == (real)WALLS_MIRRORED ? mine : 0;
+  if (s->wall_pressure == (real)WALLS_ORDINARY) return its;
+  const real wall = s->wall_pressure == (real)WALLS_MIRRORED ? mine : 0;
   return wall + only_below(ij, s->p.n, its - wall);
 }
 
@@ -384,9 +384,12 @@ static double lattice_S(const state *s)
   return sides * (double)(s->K * sq(s->dt / s->rho0) * s->mass) * total;
 }
 
-/* K_i, where they differ:   K_i = stiff_ratio K */
+/* K_i = 0: not known */
+STAGE void no_modulus(const state *s, int i) { s->bulk[i] = 0; }
+/* K_i, where they differ and K_i is not known:   K_i = stiff_ratio K */
 STAGE void give_modulus(const state *s, int i)
 {
+  if (s->bulk[i] > 0) return;
   const int other = i < s->p.n && (s->p.x[i].c[0] > s->split || (s->p.fluid && s->p.fluid[i] > 0));
   s->bulk[i] = other ? s->stiff_ratio * s->K : s->K;
 }
@@ -412,14 +415,27 @@ static status start(struct run *run, void *self)
   state *s = (state *)self;
   TRY(resolve_stiffness(s));
   if (s->fixed_iterations <= 0 && s->tolerance <= 0) s->fixed_iterations = DEFAULT_N;
-  if (s->bulk) sweep_over(give_modulus, s, s->p.n_all);
+  if (s->bulk) {
+    sweep_over(no_modulus, s, s->p.n_all);
+    sweep_over(give_modulus, s, s->p.n_all);
+  }
   return run_neighbours(run); /* the first step's viscosity */
+}
+
+/* New particles have no modulus yet. */
+static status changed(struct run *run, void *self)
+{
+  state *s = (state *)self;
+  (void)run;
+  if (s->bulk) sweep(give_modulus, s);
+  return OK;
 }
 
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
-  if (strcmp(field, "wet") == 0) return s->walls == (real)WALLS_ORDINARY && s->form == (real)EQ_14;
+  if (strcmp(field, "wet") == 0)
+    return s->wall_pressure == (real)WALLS_ORDINARY && s->form == (real)EQ_14;
   if (strcmp(field, "bulk") == 0) return s->stiff_ratio != 1;
   if (strncmp(field, "last", 4) == 0) return s->acceleration == (real)CHEBYSHEV;
   if (field[0] == 'd' && field[1] != 'i')
@@ -440,7 +456,7 @@ const struct solver solver_sisph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(FLUIDS),
+         CAN(PERIODIC) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,
@@ -448,6 +464,7 @@ const struct solver solver_sisph = {
   .state_size = sizeof(state),
   .start = start,
   .step = step,
+  .changed = changed,
   .project = NULL,
   .max_dt = NULL,
   .uses = uses,

@@ -11,7 +11,8 @@ enum { GUARD_NONE, GUARD_PSI, GUARD_RESIDUAL };
 enum { MOST_ITERATIONS = 16, COMPONENTS = DIM + 1 };
 
 struct choices {
-  int iterations, energy, form, walls, step_length, common, acceleration, depth, guard, unclamped;
+  int iterations, energy, form, walls, step_length, common, acceleration, depth, guard, unclamped,
+    mixed;
   double beta, radius, K, ratio, split;
 };
 static const struct choices usual = {
@@ -25,6 +26,7 @@ static double residual[TWIN_MOST][DIM];
 static int retreats;
 
 static double V0(const struct cloud *c) { return pow(c->dx, DIM); }
+static double true_mass(const struct cloud *c, int i) { return c->rho0 / c->light[i] * V0(c); }
 static double B(int energy, double l)
 {
   return energy == B0   ? (l - 1) * (l - 1) / 2
@@ -56,15 +58,15 @@ static double twin_psi(const struct cloud *c, const struct choices *o, int i)
 {
   double square = 0;
   for (int d = 0; d < DIM; d++) square += pow(c->x[i][d] - x_star[i][d], 2);
-  return c->rho0 * V0(c) * square / (2 * c->dt * c->dt) + mu[i] * B(o->energy, lambda[i]);
+  return true_mass(c, i) * square / (2 * c->dt * c->dt) + mu[i] * B(o->energy, lambda[i]);
 }
 
-/* (dt^2/rho0) W'/r with the scaled W */
+/* (dt^2/rho0_i) W'/r with the scaled W */
 static double twin_a(const struct cloud *c, int i, int j)
 {
   const double r = twin_distance(c, i, j), scaled = c->mass / (c->rho0 * V0(c));
   const double slope = (double)kernel_dW(&c->kernel, (real)r, DIM);
-  return near[i][j] && r > 0 ? c->dt * c->dt / c->rho0 * scaled * slope / r : 0;
+  return near[i][j] && r > 0 ? c->dt * c->dt * c->light[i] / c->rho0 * scaled * slope / r : 0;
 }
 
 /* S_i and the residual x*_i + sum A- (x_j - x_i) + sum A+ x_j - (1 + S_i) x_i of Eq. (12), (14) */
@@ -96,7 +98,7 @@ static double twin_alpha(const struct cloud *c, const struct choices *o, int i, 
   double slope = 0;
   if (o->step_length == STEP_NONE) return 1;
   if (o->step_length == STEP_REPAIRED && c->rho[i] <= c->rho0) return 1;
-  for (int d = 0; d < DIM; d++) slope -= c->rho0 * V0(c) / (c->dt * c->dt) * residual[i][d] * dx[d];
+  for (int d = 0; d < DIM; d++) slope -= true_mass(c, i) / (c->dt * c->dt) * residual[i][d] * dx[d];
   return slope < 0 ? fmin(-twin_psi(c, o, i) / slope, 1) : 1;
 }
 
@@ -256,7 +258,7 @@ static void compare(int side, int walls, int kernel, int steps, struct choices o
   const struct setting settings[] = {
     {"energy", o.energy},
     {"form", o.form},
-    {"walls", o.walls},
+    {"wall_pressure", o.walls},
     {"fixed_iterations", o.iterations},
     {"K", o.K},
     {"stiff_ratio", o.ratio},
@@ -272,9 +274,12 @@ static void compare(int side, int walls, int kernel, int steps, struct choices o
     {NULL, 0},
   };
   cloud_make(&run, side, walls, kernel, 7 + (unsigned long long)walls);
+  if (o.mixed) cloud_mix(&run);
   twin = run;
-  for (int i = 0; i < run.n_all; i++)
-    mu[i] = o.K * V0(&run) * (i < run.n && run.x[i][0] > o.split ? o.ratio : 1);
+  for (int i = 0; i < run.n_all; i++) {
+    const int other = i < run.n && (run.x[i][0] > o.split || (o.mixed && i % 2 == 0));
+    mu[i] = o.K * V0(&run) * (other ? o.ratio : 1);
+  }
   cloud_run(&run, &solver_sisph, settings, steps);
   retreats = 0;
   for (int k = 0; k < steps; k++) twin_step(&twin, &o);
@@ -335,6 +340,18 @@ static void test_soft_beside_stiff(void **unused)
   o.ratio = 0.125;
   o.split = 0.4375;
   compare(SIDE, 1, KERNEL_SPIKY, 1, o);
+}
+/* Two fluids, the lighter one also softer. */
+static void test_two_fluids(void **unused)
+{
+  (void)unused;
+  struct choices o = usual;
+  o.mixed = 1;
+  compare(SIDE, 1, KERNEL_SPIKY, 1, o);
+  o.ratio = 0.25;
+  o.common = 1;
+  o.step_length = STEP_REPAIRED;
+  compare(SIDE, 0, KERNEL_CUBIC, 1, o);
 }
 static void test_chebyshev(void **unused)
 {
@@ -401,8 +418,9 @@ int main(void)
     cmocka_unit_test(test_energies),     cmocka_unit_test(test_walls),
     cmocka_unit_test(test_unclamped),    cmocka_unit_test(test_diagonals),
     cmocka_unit_test(test_step_lengths), cmocka_unit_test(test_soft_beside_stiff),
-    cmocka_unit_test(test_chebyshev),    cmocka_unit_test(test_anderson),
-    cmocka_unit_test(test_safeguards),   cmocka_unit_test(test_two_steps),
+    cmocka_unit_test(test_two_fluids),   cmocka_unit_test(test_chebyshev),
+    cmocka_unit_test(test_anderson),     cmocka_unit_test(test_safeguards),
+    cmocka_unit_test(test_two_steps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,7 +69,7 @@ static void test_walls(void **unused)
   static const char *const names[] = {"ordinary", "still", "mirrored"};
   struct rest rest[3];
   for (int walls = ORDINARY; walls <= MIRRORED; walls++) {
-    const struct setting settings[] = {{"walls", walls}, {NULL, 0}};
+    const struct setting settings[] = {{"wall_pressure", walls}, {NULL, 0}};
     rest[walls] = settle(settings);
     print_message("%-9s pressure off by %.3f, speed %.4f\n", names[walls],
                   rest[walls].pressure_error, rest[walls].speed);
