@@ -237,9 +237,9 @@ static void test_alone(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_free_fluid), cmocka_unit_test(test_walls),
-    cmocka_unit_test(test_unclamped),  cmocka_unit_test(test_warm_start),
-    cmocka_unit_test(test_viscosity),  cmocka_unit_test(test_fluids),
+    cmocka_unit_test(test_free_fluid),    cmocka_unit_test(test_walls),
+    cmocka_unit_test(test_unclamped),     cmocka_unit_test(test_warm_start),
+    cmocka_unit_test(test_viscosity),     cmocka_unit_test(test_fluids),
     cmocka_unit_test(test_default_omega), cmocka_unit_test(test_tolerance),
     cmocka_unit_test(test_alone),
   };
