@@ -1,17 +1,17 @@
 /* Projection of the velocity by its Helmholtz decomposition.
- * The paper: Virtual Reality & Intelligent Hardware 3(2) (2021) 118-128,
+ * "Helmholtz decomposition-based SPH", Virtual Reality & Intelligent Hardware 3(2) (2021) 118-128,
  * doi:10.1016/j.vrih.2021.01.003. Equation numbers are that paper's.
  *
  * Differences from the paper: see DIFFERENCES below.
  *
- * eta: with the paper's 0.01 R^2 in the denominator the Laplacian of a lattice is too small and
- * pressures 4 % (2-D, R = 2.5 dx) too large at any dx; eta = 0 converges. First step of the
- * rotating square, errors of p at dx .01, .005, .0025: .239, .135, .086; eta = 0: .195, .094, .046.
- * surface: all of a surface's neighbours inside a disordered fluid feel the lifted diagonal, too,
- * where they have less than a lattice's sum: displaced by 0.1 dx that first step has 0.2 of its
- * pressure. zero does not have this fault, but lets tanks and patches gain energy.
- * eos: the projection takes away what the equation of state did, as far as it resolves it; it does
- * not hold the volume under gravity, kappa does. */
+ * eta: the paper's 0.01 R^2 makes the Laplacian of a lattice 4 to 5 % too small (R = 2.5 dx), so
+ * pressures do not converge to the exact ones. First step of the rotating square, errors of p at
+ * dx .01, .005, .0025: .239, .135, .086; eta = 0: .195, .094, .046.
+ * surface: in disordered fluid the lifted diagonal acts inside, too: displaced by 0.1 dx, the same
+ * step has an error of 0.78 (zero: 0.14). But with zero patches fly apart at 0.25 s, and a tank's
+ * motion grows faster.
+ * kappa: without it a tank is compressed by 15 % in 1 s. The equation of state does not replace it:
+ * the projection takes away what it resolves of it. */
 #include "../core/linear/cg.h"
 #include "../core/solver.h"
 
@@ -123,10 +123,11 @@ STAGE real divergence(const state *s, int i)
 /* Eq. (6)   -lap phi_i = sum_j a_ij (phi_i - phi_j),   V_j = m_j/rho_j,
  *           a_ij = 2 V_j |W'_ij| |x_ij| / (|x_ij|^2 + 0.01 R^2);   phi_b = phi_i on walls
  * fluids    1/rho in the pressure's equation: a_ij 2 light_i light_j/(light_i + light_j)
- * lifted    what is missing of a full lattice's sum, walls included, goes to phi = 0 */
+ * lifted    what is missing of a full lattice's sum, walls included, goes to phi = 0
+ * zero      phi_i = 0; then b_i = 0 keeps it 0 in CG, whatever its neighbours' rows say */
 STAGE void laplacian(const state *s, int i)
 {
-  const real R2 = sq(s->nb.kernel.R), own = light(&s->p, i), dense = s->mass / s->thin;
+  const real R2 = sq(s->nb.kernel.R), own = light(&s->p, i);
   const int walls = s->p.n_all > s->p.n, alone = held(s, i);
   lanes fluid = NO_LANES, wall = NO_LANES;
   for_neighbours (s, i, ij) {
@@ -136,7 +137,6 @@ STAGE void laplacian(const state *s, int i)
     if (walls) wall += on_wall(s, ij) * of(s->p.m, ij) / s->rho0 * shape;
     if (s->p.light) a = a * (2 * own * light_of(&s->p, ij) / (own + light_of(&s->p, ij)));
     fluid += a;
-    if (s->surface == (real)ZERO) a = positive(dense - V, a);
     keep(s->coef, ij, alone ? NO_LANES : a);
   }
   const real open = sum(fluid), lifted = larger(open, own * (s->full - sum(wall)));

@@ -7,7 +7,12 @@
  * Two passes over the pairs per iteration: a^p_i from p, then (A p)_i from a^p. The paper's own two
  * passes, sum_j d_ij p_j and Eq. (13), add up the same numbers in another order, but read more of
  * them per pair. Here (A p)_i - (rho_0 - rho_adv_i) is also the error to stop by, and the a^p that
- * it was found from is the one that acts: no pass is left over after the last iteration. */
+ * it was found from is the one that acts: no pass is left over after the last iteration.
+ *
+ * wall_pressure: own makes pressure forces the adjoint of Eq. (4), so that A is symmetric and a
+ * resting tank loses energy; pressures at walls come out too large (hydrostatic error 1.6 in the
+ * first steps). mirrored has better pressures (0.2 to 0.4), but is no adjoint: the same tank's
+ * motion grows, at any tolerance and dt (0.4 sqrt(g H) after 1 s against 0.04; free diverges). */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
 #include <string.h>
@@ -22,13 +27,12 @@
   "2/theta_max the iteration diverges\n"                                                           \
   "clamp: free lets p < 0 hold density where it is below rho_0, but never raise it, so that "      \
   "surfaces do not contract\n"                                                                     \
-  "walls: mirrored (default) takes p_b = p_i and rho_b = rho_0 in p_i/rho_i^2 + p_b/rho_b^2; "     \
-  "own is the paper's, p_i/rho_i^2 alone, which doubles pressures at a wall\n"                     \
+  "walls: own is the paper's, p_i/rho_i^2 alone; mirrored adds p_i/rho_0^2 for the wall\n"         \
   "warm start: from a part of the last p/rho^2, the paper's from a part of p\n"                    \
   "isolated particles: p = 0 where -a_ii rho_i^2/dt^2 < 1e-6 (rho_0/R)^2"
 
 enum { CLAMPED, FREE };
-enum { MIRRORED, OWN };
+enum { OWN, MIRRORED };
 enum { LEAST_ITERATIONS = 2 };
 
 #define PARAMS(P)                                                                                  \
@@ -38,7 +42,8 @@ enum { LEAST_ITERATIONS = 2 };
   P(omega, 0, 0, 2, "1", "relaxation of the Jacobi iteration; 0: 0.5 or what the lattice bears")   \
   P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")            \
   P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                               \
-  P(wall_pressure, MIRRORED, 0, 1, "mirrored|own", "does a wall push with p_i too, or p_i alone?")
+  P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                      \
+    "walls push with p_i alone, or with p_b = p_i as well")
 
 #define FIELDS(F)                                                                                  \
   F(real, push, ALL, KEPT, "m^5/(kg s^2)", "p_i/rho_i^2, 0 on walls")                              \

@@ -3,7 +3,7 @@
 #include "twin_solvers.h"
 
 enum { CLAMPED, FREE };
-enum { MIRRORED, OWN };
+enum { OWN, MIRRORED };
 struct choices {
   int iterations, clamp, wall;
   double warm, omega;
@@ -148,7 +148,8 @@ static void test_fluids(void **unused)
   static struct cloud c, twin;
   static real light[TWIN_MOST + 1];
   const struct choices o = {4, CLAMPED, MIRRORED, 0.5, 0.25};
-  const struct setting settings[] = {{"fixed_iterations", 4}, {"omega", 0.25}, {NULL, 0}};
+  const struct setting settings[] = {
+    {"fixed_iterations", 4}, {"omega", 0.25}, {"wall_pressure", MIRRORED}, {NULL, 0}};
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 3);
   twin = c;
   twin_start(&twin);
@@ -218,6 +219,39 @@ static void test_tolerance(void **unused)
   assert_true(mean > 0.5 * tolerance);
 }
 
+/* However small the error, there are two iterations. */
+static void test_least(void **unused)
+{
+  (void)unused;
+  static struct cloud run, twin;
+  const struct setting settings[] = {{"tolerance", 1}, {"omega", 0.25}, {NULL, 0}};
+  cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 9);
+  twin = run;
+  cloud_run(&run, &solver_iisph, settings, 1);
+  twin_start(&twin);
+  const struct choices o = {2, CLAMPED, MIRRORED, 0.5, 0.25};
+  twin_step(&twin, &o);
+  assert_same_cloud(&run, &twin, 1);
+}
+
+/* Two particles that part at a distance of 0.999 R do not feel each other. */
+static void test_barely_touching(void **unused)
+{
+  (void)unused;
+  static struct cloud c;
+  const struct setting settings[] = {{"fixed_iterations", 50}, {"clamp", FREE}, {NULL, 0}};
+  cloud_make(&c, 2, 0, KERNEL_CUBIC, 3);
+  c.n = c.n_all = 2;
+  memset(c.x, 0, sizeof c.x);
+  memset(c.v, 0, sizeof c.v);
+  memset(c.gravity, 0, sizeof c.gravity);
+  c.x[1][0] = 0.999 * (double)c.kernel.R;
+  c.v[0][0] = -1e-3, c.v[1][0] = 1e-3;
+  cloud_run(&c, &solver_iisph, settings, 1);
+  assert_true(fabs(c.v[0][0] + 1e-3) < TWIN_TOLERANCE);
+  assert_true(fabs(c.v[1][0] - 1e-3) < TWIN_TOLERANCE);
+}
+
 /* A particle alone falls freely: a_ii = 0 is no division by zero. */
 static void test_alone(void **unused)
 {
@@ -241,6 +275,7 @@ int main(void)
     cmocka_unit_test(test_unclamped),     cmocka_unit_test(test_warm_start),
     cmocka_unit_test(test_viscosity),     cmocka_unit_test(test_fluids),
     cmocka_unit_test(test_default_omega), cmocka_unit_test(test_tolerance),
+    cmocka_unit_test(test_least),         cmocka_unit_test(test_barely_touching),
     cmocka_unit_test(test_alone),
   };
   return cmocka_run_group_tests_name("iisph twin " SPHBENCH_VARIANT, tests, NULL, NULL);
