@@ -6,49 +6,60 @@
  *
  * eta: the paper's 0.01 R^2 makes the Laplacian of a lattice 4 to 5 % too small (R = 2.5 dx), so
  * pressures do not converge to the exact ones. First step of the rotating square, errors of p at
- * dx .01, .005, .0025: .239, .135, .086; eta = 0: .195, .094, .046.
- * surface: in disordered fluid the lifted diagonal acts inside, too: displaced by 0.1 dx, the same
- * step has an error of 0.78 (zero: 0.14). But with zero patches fly apart at 0.25 s, and a tank's
- * motion grows faster.
- * kappa: without it a tank is compressed by 15 % in 1 s. The equation of state does not replace it:
- * the projection takes away what it resolves of it. */
+ * dx .01, .005, .0025: .151, .064, .024, then .023; eta = 0: .180, .094, .048.
+ *
+ * surface: with lifted those errors are .239, .135, .086 (eta = 0: .195, .094, .046), and .78
+ * (zero: .14) where particles are displaced by 0.1 dx, since there the lifted diagonal acts inside,
+ * too. In 3-D tanks and dam breaks blow up with lifted, not with zero; a square patch in tension
+ * blows up at 0.25 s with zero, with lifted it lives for 2 s.
+ *
+ * wall_velocity: with own the divergence sees half of the flow into a wall. Errors of a dam break's
+ * pressure at t = 0, dx .02, .01, .005: .44, .46, .47; mirrored: .136, .087, .063 (both lifted;
+ * with zero .053, .025, .027). mirrored is also the adjoint of p_b = p_i.
+ *
+ * kappa: the equation of state does not replace it: the projection takes away what it resolves of
+ * it. */
 #include "../core/linear/cg.h"
 #include "../core/solver.h"
 
-#define DIFFERENCES                                                                                \
-  "system: in the inner product weighted by V_i, where it is symmetric at any density, with "      \
-  "Jacobi's preconditioner; the paper asks for uniform density\n"                                  \
-  "surface: the paper says nothing and its sums put no condition there (printed: the system is "   \
-  "singular); lifted lets the part that a full lattice's diagonal has in excess go to phi = 0 "    \
-  "(Nair & Tomar 2014); zero puts phi = 0 where the density is nearer to that of the outermost "   \
-  "layer of a half lattice than to rho_0\n"                                                        \
-  "walls: phi_b = phi_i in the Laplacian and p_b = p_i, rho_b = rho_0 in the gradient; div v* "    \
-  "includes the walls' velocities\n"                                                               \
-  "gradient: rho_0 in place of the factor rho_i of Eq. (4), so that momentum is kept\n"            \
-  "kappa: a step also aims at taking that part of the excess density away; without gravity none\n" \
-  "order: positions move first, with the projected velocity\n"                                     \
-  "stopping: by the rms volume change per step that the residual means, and by a part of the "     \
-  "first residual (tolerance = 1: by the former alone, as in the paper)\n"                         \
-  "eos: off by default; its pressure is cut off below rho_0, where it would contract surfaces\n"   \
-  "viscosity: that of the scene, not Eq. (13)\n"                                                   \
+#define DIFFERENCES                                                                                 \
+  "system: in the inner product weighted by V_i, where it is symmetric at any density, with "       \
+  "Jacobi's preconditioner; the paper asks for uniform density\n"                                   \
+  "surface: the paper says nothing and its sums put no condition there (printed: the system is "    \
+  "singular); lifted lets the part that a full lattice's diagonal has in excess go to phi = 0 "     \
+  "(Nair & Tomar 2014); zero puts phi = 0 where the density is nearer to that of the outermost "    \
+  "layer of a half lattice than to rho_0, and lets diagonals fall short by no more than that\n"     \
+  "walls: phi_b = phi_i in the Laplacian, p_b = p_i and rho_b = rho_0 in the gradient, and the "    \
+  "velocity 2 v_b - v_i in div v* (wall_velocity = own: v_b)\n"                                     \
+  "diagonal: at least that of the divergence of the gradient, as the two sums compose: a particle " \
+  "with nothing but walls about it would have none, and be thrown back faster than it came\n"       \
+  "gradient: rho_0 in place of the factor rho_i of Eq. (4), so that momentum is kept\n"             \
+  "kappa: a step also aims at taking that part of the excess density away; without gravity none\n"  \
+  "order: positions move first, with the projected velocity\n"                                      \
+  "stopping: by the rms volume change per step that the residual means, and by a part of the "      \
+  "first residual (tolerance = 1: by the former alone, as in the paper)\n"                          \
+  "eos: off by default; its pressure is cut off below rho_0, where it would contract surfaces\n"    \
+  "viscosity: that of the scene, not Eq. (13)\n"                                                    \
   "several fluids: 1/rho_i as in Cummins & Rudman 1999; the paper has one"
 
 enum { OFF, ON };
 enum { PRINTED, LIFTED, ZERO };
+enum { WALL_OWN, WALL_MIRRORED };
 enum { LEAST_ITERATIONS = 2 };
 #define TINY ((real)1e-12) /* of R^2: keeps r = 0 from 0/0 */
 
-#define PARAMS(P)                                                                              \
-  P(volume_error, 1e-4, 0, 1, "1", "rms relative change of volume per step that CG may leave") \
-  P(tolerance, 1e-3, 0, 1, "1", "part of the divergence that CG may leave")                    \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                      \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")        \
-  P(surface, LIFTED, 0, 2, "printed|lifted|zero",                                              \
-    "at a free surface: nothing, the missing part of the Laplacian with phi = 0, or phi = 0")  \
-  P(kappa, -1, -1, 100, "1", "density compensation; -1: 0.1 with gravity, 0 without")          \
-  P(eta, 0.01, 0, 1, "R^2", "what is added to |x_ij|^2 in the Laplacian")                      \
-  P(eos, OFF, 0, 1, "off|on", "pressure by an equation of state in the prediction")            \
-  P(stiffness, 0, 0, 1e12, "Pa", "its stiffness; 0: sound moves 0.1 dx in a step")             \
+#define PARAMS(P)                                                                               \
+  P(volume_error, 1e-4, 0, 1, "1", "rms relative change of volume per step that CG may leave")  \
+  P(tolerance, 1e-3, 0, 1, "1", "part of the divergence that CG may leave")                     \
+  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                       \
+  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")         \
+  P(surface, ZERO, 0, 2, "printed|lifted|zero",                                                 \
+    "at a free surface: nothing, the missing part of the Laplacian with phi = 0, or phi = 0")   \
+  P(kappa, -1, -1, 100, "1", "density compensation; -1: 0.1 with gravity, 0 without")           \
+  P(wall_velocity, WALL_MIRRORED, 0, 1, "own|mirrored", "walls in div v*: v_b, or 2 v_b - v_i") \
+  P(eta, 0.01, 0, 1, "R^2", "what is added to |x_ij|^2 in the Laplacian")                       \
+  P(eos, OFF, 0, 1, "off|on", "pressure by an equation of state in the prediction")             \
+  P(stiffness, 0, 0, 1e12, "Pa", "its stiffness; 0: sound moves 0.1 dx in a step")              \
   P(gamma, 7, 1, 20, "1", "its exponent")
 
 #define FIELDS(F)                                                                             \
@@ -66,7 +77,7 @@ typedef struct {
   FIELDS(FIELD_MEMBER)
   real *coef;     /* a_ij, one per slot of nb [1/m^2] */
   real full;      /* sum_j a_ij of a full lattice [1/m^2] */
-  real thin;      /* density below which surface = zero sees a surface [kg/m^3] */
+  real thin;      /* rho/rho_0 below which surface = zero sees a surface [1] */
   real eos_scale; /* kappa of the equation of state [Pa] */
 } state;
 
@@ -106,25 +117,58 @@ STAGE void repel(const state *s, int i)
   s->p.v[i] = madd(s->p.v[i], -s->dt * light(&s->p, i), sum(a));
 }
 
-STAGE int held(const state *s, int i) { return s->surface == (real)ZERO && s->p.rho[i] < s->thin; }
+STAGE int held(const state *s, int i)
+{
+  return s->surface == (real)ZERO && s->p.rho[i] < s->thin * s->rho0;
+}
+
+/* m_j; twice on walls whose velocity is mirrored, v_i - (2 v_b - v_i) = 2 (v_i - v_b) */
+STAGE lanes mass_felt(const state *s, struct packet ij)
+{
+  const lanes m = of(s->p.m, ij);
+  const int mirrored = s->p.n_all > s->p.n && s->wall_velocity == (real)WALL_MIRRORED;
+  return mirrored ? m + m * on_wall(s, ij) : m;
+}
 
 /* Eq. (18)  -div v*_i = 1/rho_i sum_j m_j (v*_i - v*_j) . grad W_ij, over walls too,
  *           + kappa (rho_i/rho_0 - 1)/dt where rho_i > rho_0; returns its part of the norm */
 STAGE real divergence(const state *s, int i)
 {
   lanes rate = NO_LANES;
-  for_neighbours (s, i, ij) rate += of(s->p.m, ij) * dot(diff(s->p.v, ij), gradW(&s->nb, ij));
+  for_neighbours (s, i, ij) rate += mass_felt(s, ij) * dot(diff(s->p.v, ij), gradW(&s->nb, ij));
   const real excess = larger(s->p.rho[i] / s->rho0 - 1, 0);
   const real b = sum(rate) / s->p.rho[i] + s->kappa * excess / s->dt;
   s->source[i] = held(s, i) ? 0 : b;
   return s->p.V[i] * sq(s->source[i]);
 }
 
+/* What Eq. (18) finds of the velocities that Eq. (4) gives for phi_i = 1 alone:
+ * rho_0/rho_i^3 (light_i sum_j m_j grad W_ij . sum_j m_j (1 + [wall] rho_i^2/rho_0^2) grad W_ij
+ *                + sum_fluid light_j |m_j grad W_ij|^2) */
+STAGE real composed(const state *s, int i)
+{
+  const real rho = s->p.rho[i], mirrored = sq(rho / s->rho0);
+  const int walls = s->p.n_all > s->p.n;
+  lanes others = NO_LANES;
+  vecs felt = NO_VECS, given = NO_VECS;
+  for_neighbours (s, i, ij) {
+    const vecs g = gradW(&s->nb, ij), mg = scale(of(s->p.m, ij), g);
+    felt = add(felt, scale(mass_felt(s, ij), g));
+    given = add(given, mg);
+    if (walls) given = add(given, scale(mirrored * on_wall(s, ij), mg));
+    others += light_of(&s->p, ij) * dot(mg, mg);
+  }
+  return s->rho0 / (rho * rho * rho) *
+         (light(&s->p, i) * inner(sum(felt), sum(given)) + sum(others));
+}
+
 /* Eq. (6)   -lap phi_i = sum_j a_ij (phi_i - phi_j),   V_j = m_j/rho_j,
  *           a_ij = 2 V_j |W'_ij| |x_ij| / (|x_ij|^2 + 0.01 R^2);   phi_b = phi_i on walls
  * fluids    1/rho in the pressure's equation: a_ij 2 light_i light_j/(light_i + light_j)
  * lifted    what is missing of a full lattice's sum, walls included, goes to phi = 0
- * zero      phi_i = 0; then b_i = 0 keeps it 0 in CG, whatever its neighbours' rows say */
+ * zero      where rho_i is thin, phi_i = 0: b_i = 0 keeps it so in CG, whatever other rows say;
+ *           elsewhere what is missing of the part thin/rho_0 of the full sum goes to phi = 0
+ * and the diagonal is at least what is composed */
 STAGE void laplacian(const state *s, int i)
 {
   const real R2 = sq(s->nb.kernel.R), own = light(&s->p, i);
@@ -139,9 +183,10 @@ STAGE void laplacian(const state *s, int i)
     fluid += a;
     keep(s->coef, ij, alone ? NO_LANES : a);
   }
-  const real open = sum(fluid), lifted = larger(open, own * (s->full - sum(wall)));
-  const real least = alone ? s->full : (real)1e-6 * s->full;
-  s->diag[i] = larger(s->surface == (real)LIFTED ? lifted : open, least);
+  const real part = s->surface == (real)LIFTED ? 1 : s->surface == (real)ZERO ? s->thin : 0;
+  const real lifted = larger(sum(fluid), own * (part * s->full - sum(wall)));
+  const real least = alone ? s->full : larger(composed(s, i), (real)1e-6 * s->full);
+  s->diag[i] = larger(lifted, least);
   s->phi[i] = 0;
 }
 
@@ -240,7 +285,7 @@ static void measure_lattice(state *s)
         if (r > 0) total -= (double)(kernel_dW(k, r, DIM) * r / (sq(r) + s->eta * sq(k->R)));
       }
   s->full = (real)(2 * (double)(s->mass / s->rho0) * total);
-  s->thin = (real)((double)s->rho0 * (half + whole) / (2 * whole));
+  s->thin = (real)((half + whole) / (2 * whole));
 }
 
 static status start(struct run *run, void *self)

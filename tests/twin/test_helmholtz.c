@@ -6,6 +6,7 @@ enum { PRINTED, LIFTED, ZERO };
 struct choices {
   int surface, eos, iterations; /* iterations of CG; 0: elimination */
   double kappa, eta;
+  int wall_velocity_own; /* v_b in the divergence, not 2 v_b - v_i */
 };
 
 static double light_[TWIN_MOST], V[TWIN_MOST], A[TWIN_MOST][TWIN_MOST], b[TWIN_MOST],
@@ -51,20 +52,46 @@ static double full_sum(const struct cloud *c, const struct choices *o, double *l
   return total;
 }
 
+/* Eq. (18) at i for velocities v, walls' included: sum_j m_j (v_i - v_j) . grad W_ij / rho_i */
+static double minus_divergence(const struct cloud *c, const struct choices *o, int i,
+                               double (*v)[DIM])
+{
+  double total = 0;
+  for (int j = 0; j < c->n_all; j++)
+    for (int d = 0; d < DIM; d++) {
+      const double other = j < c->n || o->wall_velocity_own ? v[j][d] : 2 * v[j][d] - v[i][d];
+      total += c->mass / c->rho[i] * (v[i][d] - other) * twin_grad(c, i, j, d);
+    }
+  return total;
+}
+
+/* The divergence at i of the velocities that phi_i = 1 alone gives to all, among walls at rest */
+static double composed(const struct cloud *c, const struct choices *o, int i)
+{
+  static double v[TWIN_MOST][DIM];
+  memset(v, 0, sizeof v);
+  for (int j = 0; j < c->n_all; j++)
+    for (int d = 0; d < DIM; d++) {
+      const double g = c->rho0 * c->mass * twin_grad(c, i, j, d), rho2 = c->rho[i] * c->rho[i];
+      v[i][d] += light_[i] * g * (1 / rho2 + (j < c->n ? 0 : 1 / (c->rho0 * c->rho0)));
+      if (j < c->n) v[j][d] -= light_[j] * g / rho2;
+    }
+  return minus_divergence(c, o, i, v);
+}
+
 /* -lap phi = -div v* as A phi = b; a row that is held to phi = 0 is that equation */
 static void set_up(const struct cloud *c, const struct choices *o)
 {
   double layer;
-  const double full = full_sum(c, o, &layer);
+  const double full = full_sum(c, o, &layer), thin = (layer / c->rho0 + 1) / 2;
   memset(A, 0, sizeof A);
   for (int i = 0; i < c->n; i++) {
     double open = 0, wall = 0;
-    const int held = o->surface == ZERO && c->rho[i] < (layer + c->rho0) / 2;
-    b[i] = o->kappa * fmax(c->rho[i] / c->rho0 - 1, 0) / c->dt;
+    const int held = o->surface == ZERO && c->rho[i] < thin * c->rho0;
+    b[i] = o->kappa * fmax(c->rho[i] / c->rho0 - 1, 0) / c->dt +
+           minus_divergence(c, o, i, (double(*)[DIM])c->v);
     for (int j = 0; j < c->n_all; j++) {
       const double r = twin_distance(c, i, j);
-      for (int d = 0; d < DIM; d++)
-        b[i] += c->mass / c->rho[i] * (c->v[i][d] - c->v[j][d]) * twin_grad(c, i, j, d);
       if (j >= c->n) {
         wall += coefficient(c, o, c->mass / c->rho0, r);
         continue;
@@ -72,10 +99,11 @@ static void set_up(const struct cloud *c, const struct choices *o)
       const double both = 2 * light_[i] * light_[j] / (light_[i] + light_[j]);
       const double a = coefficient(c, o, c->mass / c->rho[j], r) * both;
       open += a;
-      if (!held && !(o->surface == ZERO && c->rho[j] < (layer + c->rho0) / 2)) A[i][j] -= a;
+      if (!held && !(o->surface == ZERO && c->rho[j] < thin * c->rho0)) A[i][j] -= a;
     }
-    const double lifted = fmax(open, light_[i] * (full - wall));
-    A[i][i] += held ? fmax(open, full) : o->surface == LIFTED ? lifted : open;
+    const double part = o->surface == PRINTED ? 0 : o->surface == LIFTED ? 1 : thin;
+    const double lifted = fmax(open, light_[i] * (part * full - wall));
+    A[i][i] += fmax(lifted, held ? full : composed(c, o, i));
     if (held) b[i] = 0;
     V[i] = c->mass / c->rho[i];
   }
@@ -168,6 +196,7 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
     {"eos", o.eos},
     {"kappa", o.kappa},
     {"eta", o.eta},
+    {"wall_velocity", !o.wall_velocity_own},
     {NULL, 0},
   };
   o.kappa = (double)(real)o.kappa;
@@ -190,45 +219,47 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 static void test_free_fluid(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 1, 0, 0.01});
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 4, 0.25, 0});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 1, 0, 0.01, 0});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 4, 0.25, 0, 0});
 }
 static void test_walls(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 4, 0.25, 0.01});
-  compare(1, KERNEL_WENDLAND2, 0, 2, (struct choices){LIFTED, 0, 3, 0.25, 0.01});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 4, 0.25, 0.01, 0});
+  compare(1, KERNEL_WENDLAND2, 0, 2, (struct choices){LIFTED, 0, 3, 0.25, 0.01, 0});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 4, 0, 0.01, 1});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){ZERO, 0, 4, 0.25, 0.01, 1});
 }
 static void test_surfaces(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_SPIKY, 0, 1, (struct choices){PRINTED, 0, 2, 0, 0.01});
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){ZERO, 0, 4, 0, 0.01});
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){ZERO, 0, 4, 0, 0.01});
+  compare(0, KERNEL_SPIKY, 0, 1, (struct choices){PRINTED, 0, 2, 0, 0.01, 0});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){ZERO, 0, 4, 0, 0.01, 0});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){ZERO, 0, 4, 0, 0.01, 0});
 }
 static void test_equation_of_state(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 1, 3, 0, 0.01});
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 1, 3, 0.25, 0.01});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 1, 3, 0, 0.01, 0});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 1, 3, 0.25, 0.01, 0});
 }
 static void test_viscosity(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){LIFTED, 0, 2, 0, 0.01});
+  compare(0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){LIFTED, 0, 2, 0, 0.01, 0});
 }
 static void test_projection(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 0, (struct choices){LIFTED, 0, 4, 0, 0.01});
+  compare(1, KERNEL_CUBIC, 0, 0, (struct choices){LIFTED, 0, 4, 0, 0.01, 0});
 }
 #ifndef REAL_IS_FLOAT
 static void test_elimination(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 0, 0.25, 0.01});
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 0, 0.25, 0.01});
-  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){ZERO, 0, 0, 0, 0.01});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 0, 0.25, 0.01, 0});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){LIFTED, 0, 0, 0.25, 0.01, 0});
+  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){ZERO, 0, 0, 0, 0.01, 0});
 }
 #endif
 
@@ -239,7 +270,7 @@ static void test_fluids(void **unused)
   (void)unused;
   static struct cloud c, twin;
   static real light[2 * TWIN_MOST];
-  const struct choices o = {LIFTED, 0, 4, 0.25, (double)(real)0.01};
+  const struct choices o = {ZERO, 0, 4, 0.25, (double)(real)0.01, 0};
   const struct setting settings[] = {{"fixed_iterations", 4}, {"kappa", 0.25}, {NULL, 0}};
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 3);
   twin = c;
@@ -277,7 +308,7 @@ static void test_tolerance(void **unused)
     const double bound = loose ? 1 : (double)(real)1e-4;
     const struct setting settings[] = {
       {"volume_error", bound}, {"tolerance", 1}, {"kappa", 0}, {NULL, 0}};
-    const struct choices o = {LIFTED, 0, 2, 0, (double)(real)0.01};
+    const struct choices o = {ZERO, 0, 2, 0, (double)(real)0.01, 0};
     cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 13);
     twin = c;
     for (int i = 0; i < c.n; i++) light_[i] = 1;
