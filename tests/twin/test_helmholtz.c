@@ -12,7 +12,7 @@ struct choices {
 static double light_[TWIN_MOST], V[TWIN_MOST], A[TWIN_MOST][TWIN_MOST], b[TWIN_MOST],
   phi[TWIN_MOST];
 
-/* Eq. (4) times dt, with p_b = p_i and rho_b = rho_0 on walls */
+/* The symmetric gradient of Sec. 2.1.2 times dt/rho_0, with p_b = p_i and rho_b = rho_0 on walls */
 static void push(struct cloud *c, const double *p)
 {
   static double dv[TWIN_MOST][DIM];
@@ -263,39 +263,65 @@ static void test_elimination(void **unused)
 }
 #endif
 
-/* Two fluids of unlike density, mixed at random. The labels' light_i go into the store after a sort
- * that the projection will find in order. */
-static void test_fluids(void **unused)
+/* A projection of two fluids of unlike density, mixed at random. The labels' light_i go into the
+ * store after a sort that the projection will find in order. */
+static void compare_mixed(struct cloud *c, struct choices o)
 {
-  (void)unused;
-  static struct cloud c, twin;
-  static real light[2 * TWIN_MOST];
-  const struct choices o = {ZERO, 0, 4, 0.25, (double)(real)0.01, 0};
-  const struct setting settings[] = {{"fixed_iterations", 4}, {"kappa", 0.25}, {NULL, 0}};
-  cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 3);
-  twin = c;
-  for (int i = 0; i < c.n; i++) light_[i] = i % 3 ? 1 : 0.25;
-  struct scene scene = cloud_scene(&c);
+  static struct cloud twin;
+  static real light[TWIN_MOST + 1];
+  const struct setting settings[] = {
+    {"fixed_iterations", o.iterations}, {"kappa", o.kappa}, {"surface", o.surface}, {NULL, 0}};
+  memset(light, 0, sizeof light);
+  twin = *c;
+  for (int i = 0; i < c->n; i++) light_[i] = i % 3 ? 1 : 0.25;
+  struct scene scene = cloud_scene(c);
   struct run *run;
   struct snapshot now;
   double values[64];
   set_values(&solver_helmholtz, settings, values);
   assert_int_equal(run_create(&solver_helmholtz, values, &scene, 0, &run), OK);
   assert_int_equal(run_neighbours(run), OK);
-  for (int k = 0; k < c.n; k++) light[k] = (real)light_[run->view->p.id[k]];
+  for (int k = 0; k < c->n; k++) light[k] = (real)light_[run->view->p.id[k]];
   run->view->p.light = light;
   assert_int_equal(run_project(run), OK);
   assert_int_equal(run_snapshot(run, &now), OK);
   for (int k = 0; k < now.n; k++) {
     const int i = now.id[k];
-    for (int d = 0; d < DIM; d++) c.v[i][d] = (double)now.v[k].c[d];
-    c.rho[i] = (double)now.rho[k], c.p[i] = (double)now.p[k];
+    for (int d = 0; d < DIM; d++) c->v[i][d] = (double)now.v[k].c[d];
+    c->rho[i] = (double)now.rho[k], c->p[i] = (double)now.p[k];
   }
   snapshot_free(&now);
   run_free(run);
   twin_density(&twin);
   twin_project(&twin, &o);
-  assert_same_cloud(&c, &twin, 1);
+  assert_same_cloud(c, &twin, 1);
+}
+
+static void test_fluids(void **unused)
+{
+  (void)unused;
+  static struct cloud c;
+  cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 3);
+  compare_mixed(&c, (struct choices){ZERO, 0, 4, 0.25, (double)(real)0.01, 0});
+}
+
+/* Half of the lowest layer alone on the walls, where what is composed makes the diagonal */
+static void test_spray(void **unused)
+{
+  (void)unused;
+  static struct cloud all, c;
+  cloud_make(&all, SIDE, 1, KERNEL_CUBIC, 3);
+  c = all;
+  const int n_wall = all.n_all - all.n;
+  c.n = n_wall / 4;
+  c.n_all = c.n + n_wall;
+  for (int k = 0; k < c.n_all; k++) {
+    const int from = k < c.n ? 2 * k : all.n + k - c.n;
+    memcpy(c.x[k], all.x[from], sizeof c.x[k]);
+    memcpy(c.v[k], all.v[from], sizeof c.v[k]);
+    memcpy(c.normal[k], all.normal[from], sizeof c.normal[k]);
+  }
+  compare_mixed(&c, (struct choices){PRINTED, 0, 2, 0, (double)(real)0.01, 0});
 }
 
 /* The volume that a step's residual may change: the rms of dt (b - A phi) over the particles, with
@@ -375,14 +401,20 @@ static void test_alone_beside_others(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_free_fluid),  cmocka_unit_test(test_walls),
-    cmocka_unit_test(test_surfaces),    cmocka_unit_test(test_equation_of_state),
-    cmocka_unit_test(test_viscosity),   cmocka_unit_test(test_projection),
+    cmocka_unit_test(test_free_fluid),
+    cmocka_unit_test(test_walls),
+    cmocka_unit_test(test_surfaces),
+    cmocka_unit_test(test_equation_of_state),
+    cmocka_unit_test(test_viscosity),
+    cmocka_unit_test(test_projection),
 #ifndef REAL_IS_FLOAT
     cmocka_unit_test(test_elimination),
 #endif
-    cmocka_unit_test(test_fluids),      cmocka_unit_test(test_tolerance),
-    cmocka_unit_test(test_alone),       cmocka_unit_test(test_alone_beside_others),
+    cmocka_unit_test(test_fluids),
+    cmocka_unit_test(test_spray),
+    cmocka_unit_test(test_tolerance),
+    cmocka_unit_test(test_alone),
+    cmocka_unit_test(test_alone_beside_others),
   };
   return cmocka_run_group_tests_name("helmholtz twin " SPHBENCH_VARIANT, tests, NULL, NULL);
 }
