@@ -22,9 +22,9 @@
   "(Koschier et al. 2019, Eurographics tutorial on SPH), which is Eq. (13)\n"                      \
   "stopping: before an update, by the mean compression that is left with the pressures that act; " \
   "the paper looks at those before the last update\n"                                              \
-  "omega: by default 0.5 as in the paper, but no more than 1.4/theta_max (0.7/theta_max if clamp " \
-  "= free), theta_max the largest eigenvalue of A over its diagonal on a lattice: beyond "         \
-  "2/theta_max the iteration diverges\n"                                                           \
+  "relaxation: omega is by default 0.5 as in the paper, but at most 1.4/theta_max (0.7/theta_max " \
+  "if clamp = free), theta_max the largest eigenvalue of A over its diagonal on a lattice; "       \
+  "beyond 2/theta_max the iteration diverges\n"                                                    \
   "clamp: free lets p < 0 hold density where it is below rho_0, but never raise it, so that "      \
   "surfaces do not contract\n"                                                                     \
   "walls: own is the paper's, p_i/rho_i^2 alone; mirrored adds p_i/rho_0^2 for the wall\n"         \
@@ -39,7 +39,7 @@ enum { LEAST_ITERATIONS = 2 };
   P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                      \
   P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
   P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(omega, 0, 0, 2, "1", "relaxation of the Jacobi iteration; 0: 0.5 or what the lattice bears")   \
+  P(relaxation, 0, 0, 2, "1", "omega of the Jacobi iteration; 0: 0.5 or what the lattice bears")   \
   P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")            \
   P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                               \
   P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                      \
@@ -57,7 +57,7 @@ typedef struct {
   VIEW;
   PARAMS(PARAM_MEMBER)
   FIELDS(FIELD_MEMBER)
-  real relaxation; /* omega in force */
+  real omega; /* relaxation in force */
 } state;
 
 /* p_i = 0 at the start; neither pressure nor acceleration of walls, for good */
@@ -94,7 +94,7 @@ STAGE void predict(const state *s, int i)
   const real least = (real)1e-6 * sq(s->rho0 * s->nb.kernel.inv_R);
   p.rho[i] = density;
   s->advected[i] = (density - s->rho0 + s->dt * sum(rate)) / s->rho0;
-  s->gain[i] = yield > least ? s->relaxation * s->rho0 / (sq(s->dt) * yield) : 0;
+  s->gain[i] = yield > least ? s->omega * s->rho0 / (sq(s->dt) * yield) : 0;
   if (s->wall) s->wall[i] = times(ratio2, G_walls);
 }
 
@@ -182,7 +182,7 @@ static status start(struct run *run, void *self)
   const double safety = s->clamp == (real)FREE ? 0.7 : 1.4;
   const double bearable = safety / lattice_stiffest(&s->nb.kernel, (double)s->dx);
   (void)run;
-  s->relaxation = s->omega > 0 ? s->omega : (real)(bearable < 0.5 ? bearable : 0.5);
+  s->omega = s->relaxation > 0 ? s->relaxation : (real)(bearable < 0.5 ? bearable : 0.5);
   sweep_over(forget, s, s->p.n_all);
   return OK;
 }

@@ -98,8 +98,12 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-    {"fixed_iterations", o.iterations}, {"clamp", o.clamp}, {"omega", o.omega}, {"warm", o.warm},
-    {"wall_pressure", o.wall},          {NULL, 0},
+    {"fixed_iterations", o.iterations},
+    {"clamp", o.clamp},
+    {"relaxation", o.omega},
+    {"warm", o.warm},
+    {"wall_pressure", o.wall},
+    {NULL, 0},
   };
   cloud_make(&run, SIDE, walls, kernel, 11 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
@@ -149,7 +153,7 @@ static void test_fluids(void **unused)
   static real light[TWIN_MOST + 1];
   const struct choices o = {4, CLAMPED, MIRRORED, 0.5, 0.25};
   const struct setting settings[] = {
-    {"fixed_iterations", 4}, {"omega", 0.25}, {"wall_pressure", MIRRORED}, {NULL, 0}};
+    {"fixed_iterations", 4}, {"relaxation", 0.25}, {"wall_pressure", MIRRORED}, {NULL, 0}};
   cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 3);
   twin = c;
   twin_start(&twin);
@@ -224,7 +228,7 @@ static void test_least(void **unused)
 {
   (void)unused;
   static struct cloud run, twin;
-  const struct setting settings[] = {{"tolerance", 1}, {"omega", 0.25}, {NULL, 0}};
+  const struct setting settings[] = {{"tolerance", 1}, {"relaxation", 0.25}, {NULL, 0}};
   cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 9);
   twin = run;
   cloud_run(&run, &solver_iisph, settings, 1);
