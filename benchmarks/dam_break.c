@@ -16,7 +16,7 @@
   P(width, 0.35, 1e-6, 1e6, "m", "width a of the column, to whole particles") \
   P(height, 0.7, 1e-6, 1e6, "m", "height of the column")                      \
   P(box_length, 1.6, 1e-6, 1e6, "m", "length of the box, inside")             \
-  P(box_height, 1.6, 1e-6, 1e6, "m", "height of the box's walls, inside")       \
+  P(box_height, 1.6, 1e-6, 1e6, "m", "height of the box's walls, inside")     \
   P(depth, 0.35, 1e-6, 1e6, "m", "depth of box and column, in 3-D")
 
 typedef struct {
@@ -131,4 +131,5 @@ const struct benchmark benchmark_dam_break = {
   .drive = NULL,
   .measure = measure,
   .projection = 0,
+  .judged_by = METRIC_front_error,
 };

@@ -89,4 +89,5 @@ const struct benchmark benchmark_free_fall = {
   .drive = NULL,
   .measure = measure,
   .projection = 0,
+  .judged_by = METRIC_trajectory_error,
 };

@@ -164,4 +164,5 @@ const struct benchmark benchmark_rotating_patch = {
   .drive = NULL,
   .measure = measure,
   .projection = 0,
+  .judged_by = METRIC_mid_edge_error,
 };

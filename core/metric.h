@@ -22,9 +22,10 @@ struct snapshot {
   const vec *x, *v;    /* [n_all] m, m/s */
   const real *p, *rho; /* [n] Pa, kg/m^3: as the solver left them; NULL if it has none */
   const int *id;       /* [n] label from the start */
+  const real *light;   /* [n] rest density rho0 over the particle's own; NULL: one fluid */
   double time, dt;
   long step;
-  double rho0, dx, mass; /* kg/m^3, m, kg per particle (2-D: kg/m) */
+  double rho0, dx, mass; /* kg/m^3, m, kg per particle of density rho0 (2-D: kg/m) */
   double support;        /* support radius [m] */
   vec gravity;
   vec low, high;                /* domain that particles must not leave [m] */

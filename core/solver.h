@@ -26,6 +26,7 @@ extern "C" {
   A(PERIODIC, "run in a periodic domain")                       \
   A(PROJECT, "project velocities without moving the particles") \
   A(MOMENTUM, "keep linear momentum to rounding")               \
+  A(ISOTROPIC, "treat all directions in space alike")           \
   A(VISCOSITY, "apply viscosity")                               \
   A(TENSION, "apply surface tension")                           \
   A(FLUIDS, "handle fluids of different rest density")          \
@@ -87,6 +88,9 @@ struct solver {
   status (*start)(struct run *run, void *state);
   /* Advance x and v from `time` to time + dt. REQUIRED. */
   status (*step)(struct run *run, void *state);
+  /* Particles were added between two steps (their private fields are 0) and the lists are new:
+   * bring up to date what step expects from the last one. Optional. */
+  status (*changed)(struct run *run, void *state);
   /* Replace v by its projection at fixed x, and set p. REQUIRED with CAN(PROJECT). */
   status (*project)(struct run *run, void *state);
   /* The largest time step that the method allows now [s]. Optional. */
@@ -100,7 +104,7 @@ struct solver {
 /* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers
  * valid --- */
 
-/* x += dt v for the fluid particles. */
+/* x += dt v for the fluid particles; bodies move on too. */
 status run_move(struct run *run);
 
 /* Sort the fluid by cell and list its neighbours into state->nb. */

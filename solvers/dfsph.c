@@ -224,6 +224,15 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* New particles have neither alpha nor a list yet. */
+static status changed(struct run *run, void *self)
+{
+  state *s = (state *)self;
+  (void)run;
+  sweep(factor, s);
+  return OK;
+}
+
 /* The divergence solver alone: with clamp = free the projection of v onto Drho_i/Dt = 0. */
 static status project(struct run *run, void *self)
 {
@@ -247,7 +256,8 @@ const struct solver solver_dfsph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(FLUIDS),
+         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) |
+         CAN(MOVING_WALLS) | CAN(BODIES) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,
@@ -255,6 +265,7 @@ const struct solver solver_dfsph = {
   .state_size = sizeof(state),
   .start = start,
   .step = step,
+  .changed = changed,
   .project = project,
   .max_dt = NULL,
   .uses = NULL,

@@ -47,41 +47,48 @@ static status drawing_failed(const struct path *script, const struct path *log)
 }
 
 /* Is the picture newer than its data and its scripts? */
-static int is_up_to_date(const struct figure *f, const char *picture, const char *shared)
+static int is_up_to_date(const struct drawing *d, const char *picture, const char *shared)
 {
+  struct path folder = d->script;
   struct stat about;
-  return stat(picture, &about) == 0 && about.st_mtime > folder_newest(f->data.text) &&
-         about.st_mtime > folder_newest(f->folder.text) && about.st_mtime > folder_newest(shared);
+  *strrchr(folder.text, '/') = '\0';
+  return stat(picture, &about) == 0 && about.st_mtime > folder_newest(d->data.text) &&
+         about.st_mtime > folder_newest(folder.text) && about.st_mtime > folder_newest(shared);
 }
 
-static status draw_kind(const struct figure *f, const char *out, const char *kind)
+static status draw_kind(const struct drawing *d, const char *kind)
 {
-  const char *name = f->recipe->name;
-  const struct path data = data_folder(), shared = path_of("%s/paper-figures/", data.text);
-  const struct path script = path_of("%s/%s.gp", f->folder.text, name);
-  const struct path temp = path_of("%s/%s.%s.tmp", f->data.text, name, kind);
-  const struct path log = path_of("%s/gnuplot.log", f->data.text);
-  const struct path whole = path_of("%s/%s.%s", out, name, kind);
+  const struct path folder = data_folder(), shared = path_of("%s/paper-figures/", folder.text);
+  const struct path temp = path_of("%s/%s.%s.tmp", d->data.text, d->name, kind);
+  const struct path log = path_of("%s/gnuplot.log", d->data.text);
+  const struct path whole = path_of("%s/%s.%s", d->out, d->name, kind);
   char absolute[4096];
-  if (is_up_to_date(f, whole.text, shared.text)) return OK;
-  if (!realpath(script.text, absolute))
-    return user_error("the figure '%s' has no script '%s'", name, script.text);
+  if (is_up_to_date(d, whole.text, shared.text)) return OK;
+  if (!realpath(d->script.text, absolute))
+    return user_error("the figure '%s' has no script '%s'", d->name, d->script.text);
   char *set[] = {quoted("kind", kind), quoted("shared", shared.text),
                  quoted("picture", strrchr(temp.text, '/') + 1)};
   const char *const argv[] = {"gnuplot", "-e", set[0], "-e", set[1], "-e", set[2], absolute, NULL};
-  const struct process process = {.argv = argv, .folder = f->data.text, .log = log.text};
+  const struct process process = {.argv = argv, .folder = d->data.text, .log = log.text};
   int exit_code = 0;
   status result = process_wait(&process, &exit_code);
   for (int k = 0; k < 3; k++) free(set[k]);
   if (result != OK) return result;
-  if (exit_code || !path_is_file(temp.text)) return drawing_failed(&script, &log);
+  if (exit_code || !path_is_file(temp.text)) return drawing_failed(&d->script, &log);
   if (rename(temp.text, whole.text)) return status_set(ERR_IO, "cannot write '%s'", whole.text);
   unlink(log.text);
   return OK;
 }
 
-status figure_draw(struct figure *figure, const char *out)
+status drawing_make(const struct drawing *drawing)
 {
-  TRY(draw_kind(figure, out, "svg"));
-  return draw_kind(figure, out, "png");
+  TRY(draw_kind(drawing, "svg"));
+  return draw_kind(drawing, "png");
+}
+
+status figure_draw(struct figure *f, const char *out)
+{
+  const struct drawing drawing = {f->recipe->name, out,
+                                  path_of("%s/%s.gp", f->folder.text, f->recipe->name), f->data};
+  return drawing_make(&drawing);
 }

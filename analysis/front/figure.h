@@ -53,6 +53,15 @@ void put_text(FILE *contents, const char *name, int number, const char *text);
 /* The facts of a run that has some (its --json file), NULL otherwise; to be released. */
 json_t *run_facts_json(const struct queue *queue, int run);
 
+/* Draw the data in a folder, with contents.gp, by a script: OUT/<name>.svg and .png. Not drawn
+ * again where they are newer than data and scripts. ERR_USER: gnuplot is missing or the script
+ * fails. */
+struct drawing {
+  const char *name, *out;
+  struct path script, data;
+};
+status drawing_make(const struct drawing *drawing);
+
 /* Draw figure->data with gnuplot; OUT/<name>.svg and .png. ERR_USER: gnuplot is missing or its
  * script fails. */
 status figure_draw(struct figure *figure, const char *out);

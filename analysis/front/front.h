@@ -5,7 +5,11 @@
 
 status verb_figure(int argc, char **argv);
 status verb_report(int argc, char **argv);
+status verb_precision(int argc, char **argv);
 status verb_doctor(int argc, char **argv);
+status verb_compare(int argc, char **argv);
+status verb_sweep(int argc, char **argv);
+status verb_bless(int argc, char **argv);
 
 /* `list` without a kind, or of figures, variants, plans; the other kinds are the variants' own. */
 status verb_list(int argc, char **argv);

@@ -9,7 +9,8 @@
   O(OK, "ok", "ran to its end")                                                                    \
   O(DIVERGED, "diverged", "failed numerically, which is a result")                                 \
   O(UNABLE, "unable", "was refused: the solver cannot do this scene, or a mistake in the request") \
-  O(CRASHED, "crashed", "ended by a signal or without a result")
+  O(CRASHED, "crashed", "ended by a signal or without a result")                                   \
+  O(TIMEOUT, "timeout", "was stopped at its time limit")
 #define O(name, word, meaning) OUTCOME_##name,
 enum outcome { OUTCOME_LIST(O) NUM_OUTCOMES };
 #undef O

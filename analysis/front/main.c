@@ -19,6 +19,10 @@ static const char usage[] =
   "  figure NAME...            run what is missing for a figure, then draw it (SVG and PNG)\n"
   "         --standard | --all    the standard ones; every one\n"
   "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
+  "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
+  "         [--results DIR] [--jobs N] [--timeout S] [--fresh] [--dry-run] [--quiet]\n"
+  "  compare RESULTS BASELINE.json [--junit FILE] [--json FILE]   exit code 1: something got worse\n"
+  "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
   "  show NAME [--json]        a solver, scene, metric or figure\n"
@@ -28,11 +32,11 @@ static const char usage[] =
   "  --help, --version\n"
   "\n"
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
-  "Exit codes: 0 done; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
+  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run", "show", "speed", "list", "figure", "report", "doctor"};
-static const char *const later[] = {"sweep", "precision",   "stability", "compare",
-                                    "bless", "convergence", "claims"};
+static const char *const verbs[] = {"run",    "show",    "speed", "list",      "figure", "report",
+                                    "doctor", "compare", "bless", "precision", "sweep"};
+static const char *const later[] = {"stability", "convergence", "claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
 
 /* Replace this process by the variant; returns only on failure. */
@@ -91,6 +95,10 @@ static status carry_out(int argc, char **argv)
     return is_own_list(argc, argv) ? verb_list(argc, argv) : start_variant(argc, argv, usual);
   if (strcmp(verb, "figure") == 0) return verb_figure(argc, argv);
   if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
+  if (strcmp(verb, "sweep") == 0) return verb_sweep(argc, argv);
+  if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
+  if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
+  if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);
   if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);
   return unknown(verb);
 }

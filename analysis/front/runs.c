@@ -26,7 +26,7 @@ status queue_open(struct queue *queue, const char *results)
   return journal_open(&queue->journal, results, 1);
 }
 
-static void run_free(struct run *run)
+void run_release(struct run *run)
 {
   for (int i = 0; i < run->argc; i++) free(run->argv[i]);
   free(run->argv);
@@ -36,7 +36,7 @@ static void run_free(struct run *run)
 
 void queue_close(struct queue *queue)
 {
-  for (int k = 0; k < queue->n; k++) run_free(&queue->run[k]);
+  for (int k = 0; k < queue->n; k++) run_release(&queue->run[k]);
   free(queue->run);
   journal_close(&queue->journal);
   *queue = (struct queue){.journal = {.file = -1}};
@@ -70,7 +70,7 @@ static void add_varied(struct run *run, const char *name, const char *value)
 
 static status make_arguments(struct run *run, const struct run_request *r)
 {
-  enum { MOST_OTHERS = 24 };
+  enum { MOST_OTHERS = 32 };
   run->argv = calloc((size_t)(MOST_OTHERS + 2 * r->num_sets), sizeof *run->argv);
   if (!run->argv) return status_set(ERR_MEMORY, "out of memory");
   add(run, strdup("run"));
@@ -78,10 +78,13 @@ static status make_arguments(struct run *run, const struct run_request *r)
   add_flag(run, "--solver", r->solver);
   add_flag(run, "--dim", r->dim);
   add_flag(run, "--precision", r->precision);
+  add_flag(run, "--backend", r->backend);
   add_flag(run, "--spacing", r->spacing);
   add_flag(run, "--dt", r->dt);
   add_flag(run, "--t-end", r->t_end);
   add_flag(run, "--frames", r->frames);
+  add_flag(run, "--seed", r->seed);
+  if (r->count_pairs) add(run, strdup("--count-pairs"));
   add_varied(run, r->vary, r->value);
   for (int k = 0; k < r->num_sets; k++) add_flag(run, "--set", r->set[k]);
   for (int k = 0; k < run->argc; k++)
@@ -129,8 +132,11 @@ static status identify(struct run *run, const char *scene)
   return OK;
 }
 
+/* Does what the journal says still hold? A run that was stopped at a limit may do with a longer
+ * one. */
 static int is_whole(const struct queue *queue, const struct journal_entry *entry)
 {
+  if (entry->outcome == OUTCOME_TIMEOUT) return queue->limit > 0 && entry->seconds >= queue->limit;
   if (entry->outcome != OUTCOME_OK && entry->outcome != OUTCOME_DIVERGED) return 1;
   const struct path json = run_file(queue->results, entry->id, "json");
   const struct path frames = run_file(queue->results, entry->id, "vtkhdf");
@@ -147,7 +153,7 @@ static void look_up(const struct queue *queue, struct run *run)
   run->reason = strdup(entry->reason);
 }
 
-static status make_run(const struct run_request *request, struct run *run)
+status run_make(const struct run_request *request, struct run *run)
 {
   struct variant variant = {"openmp", "f64", 2};
   TRY(make_arguments(run, request));
@@ -173,15 +179,15 @@ status queue_add(struct queue *queue, const struct run_request *request, int *nu
 {
   struct run run = {.argc = 0};
   TRY(make_room(queue));
-  const status result = make_run(request, &run);
+  const status result = run_make(request, &run);
   for (int k = 0; result == OK && k < queue->n; k++)
     if (strcmp(queue->run[k].id, run.id) == 0) {
       *number = k;
-      run_free(&run);
+      run_release(&run);
       return OK;
     }
   if (result != OK) {
-    run_free(&run);
+    run_release(&run);
     return result;
   }
   look_up(queue, &run);

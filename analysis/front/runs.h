@@ -9,7 +9,8 @@
 /* One run as a user would type it; NULL: the scene's or the program's own default. */
 struct run_request {
   const char *scene, *solver;
-  const char *dim, *precision, *dt, *t_end, *spacing, *frames;
+  const char *dim, *precision, *backend, *dt, *t_end, *spacing, *frames, *seed;
+  int count_pairs;
   char *const *set; /* KEY=VALUE [num_sets] */
   int num_sets;
   const char *vary, *value; /* one parameter more, by its name; NULL: none */
@@ -32,10 +33,16 @@ struct queue {
   int n, room;
   const char *results;
   struct journal journal;
-  int jobs;  /* at once */
-  int quiet; /* no progress */
-  int done;  /* were run just now */
+  int jobs;     /* at once */
+  double limit; /* [s] that a run may take; 0: any */
+  int quiet;    /* no progress */
+  int done;     /* were run just now */
 };
+
+/* What a request is to be run as, without running it: executable, arguments, id. ERR_USER, ERR_IO,
+ * ERR_MEMORY. */
+status run_make(const struct run_request *request, struct run *run);
+void run_release(struct run *run);
 
 /* Open the journal of `results`, making the folder. ERR_IO, ERR_USER. */
 status queue_open(struct queue *queue, const char *results);
@@ -50,6 +57,9 @@ status queue_work(struct queue *queue);
 
 /* The file of a run: suffix "json", "vtkhdf" or "log". */
 struct path run_file(const char *results, const char *id, const char *suffix);
+
+/* The last line of a log, without the program's name; to be released by free(). */
+char *run_last_words(const char *log);
 
 void queue_close(struct queue *queue);
 

@@ -20,6 +20,7 @@ struct child {
   pid_t pid; /* 0: free */
   int run;
   double begun, expected; /* [s]; expected 0: not known */
+  double stopped;         /* when it was told to, having reached the limit; 0: it was not */
 };
 
 struct work {
@@ -92,8 +93,7 @@ static void start_some(struct work *w)
 
 /* --- what became of a child --- */
 
-/* The last line of a log, without the program's name. */
-static char *last_line(const char *path)
+char *run_last_words(const char *path)
 {
   char *text;
   size_t size;
@@ -146,7 +146,7 @@ static int classify(struct work *w, const struct run *run, int exit_code, char *
   if (exit_code == 3) outcome = said_in_json(json.text, reason);
   if (outcome != OUTCOME_CRASHED) return outcome;
   if (w->stopped > 0) return NUM_OUTCOMES;
-  *reason = last_line(log.text);
+  *reason = run_last_words(log.text);
   if (exit_code == 2) {
     if (!*reason || strncmp(*reason, "cannot write", 12) != 0) return OUTCOME_UNABLE;
     fail(w, status_set(ERR_IO, "%s", *reason)); /* a full disk says nothing about the solver */
@@ -183,7 +183,9 @@ static void take_end(struct work *w, struct child *child, int state)
   const int exit_code = WIFSIGNALED(state) ? 128 + WTERMSIG(state) : WEXITSTATUS(state);
   child->pid = 0;
   run->seconds = clock_now() - child->begun;
-  const int outcome = classify(w, run, exit_code, &run->reason);
+  const int too_long = child->stopped > 0 && exit_code != 0;
+  if (too_long) run->reason = text_make("takes longer than %g s", w->queue->limit);
+  const int outcome = too_long ? OUTCOME_TIMEOUT : classify(w, run, exit_code, &run->reason);
   if (outcome == NUM_OUTCOMES) return;
   run->outcome = (enum outcome)outcome;
   run->finished = 1;
@@ -198,7 +200,7 @@ static void take_end(struct work *w, struct child *child, int state)
                                 .variant = run->name.text,
                                 .what = run->what};
   memcpy(entry.id, run->id, sizeof entry.id);
-  if (is_final(exit_code)) fail(w, journal_add(&w->queue->journal, &entry));
+  if (too_long || is_final(exit_code)) fail(w, journal_add(&w->queue->journal, &entry));
 }
 
 /* --- progress --- */
@@ -254,6 +256,19 @@ static void stop_children(struct work *w)
     if (w->child[j].pid) kill(w->child[j].pid, number);
 }
 
+/* A run at its limit is asked to stop, and killed when it does not. */
+static void keep_limit(struct work *w)
+{
+  const double now = clock_now(), limit = w->queue->limit;
+  for (int j = 0; j < w->jobs && limit > 0 && !(w->stopped > 0); j++) {
+    struct child *child = &w->child[j];
+    if (!child->pid || now - child->begun < limit) continue;
+    if (child->stopped > 0 && now - child->stopped < PATIENCE) continue;
+    kill(child->pid, child->stopped > 0 ? SIGKILL : SIGTERM);
+    if (!(child->stopped > 0)) child->stopped = now;
+  }
+}
+
 static int running(const struct work *w)
 {
   int n = 0;
@@ -276,6 +291,7 @@ static void loop(struct work *w, const char *const *notes)
   start_some(w);
   while (running(w) > 0) {
     if (stop_signal || w->failed != OK) stop_children(w);
+    keep_limit(w);
     nanosleep(&pause, NULL);
     collect(w);
     start_some(w);

@@ -50,20 +50,27 @@ static void add_cross(const double *x, vec v, double sum[3])
   sum[1] += z * (double)v.c[0] - x[0] * w;
 }
 
+/* [kg] */
+static double mass_of(const struct snapshot *now, int i)
+{
+  return now->light ? now->mass / (double)now->light[i] : now->mass;
+}
+
 static void measure_momenta(const struct snapshot *now, struct measures *out)
 {
   double centre[DIM], linear[DIM] = {0}, angular[3] = {0};
   centre_of_start(now, centre);
   for (int i = 0; i < now->n; i++) {
     double x[DIM];
+    const double m = mass_of(now, i);
     for (int d = 0; d < DIM; d++) {
-      x[d] = (double)now->x[i].c[d] - centre[d];
-      linear[d] += (double)now->v[i].c[d];
+      x[d] = m * ((double)now->x[i].c[d] - centre[d]);
+      linear[d] += m * (double)now->v[i].c[d];
     }
     add_cross(x, now->v[i], angular);
   }
-  MEASURE(out, linear_momentum, now->mass * length(linear, DIM));
-  MEASURE(out, angular_momentum, now->mass * length(angular, 3));
+  MEASURE(out, linear_momentum, length(linear, DIM));
+  MEASURE(out, angular_momentum, length(angular, 3));
 }
 
 /* NaN where the height is not one: gravity along a periodic axis. */
@@ -78,9 +85,9 @@ static double potential_energy(const struct snapshot *now)
     for (int i = 0; i < now->n; i++) {
       const int label = now->id[i];
       if (label < now->num_start)
-        moved += (double)now->x[i].c[d] - (double)now->x_start[label].c[d];
+        moved += mass_of(now, i) * ((double)now->x[i].c[d] - (double)now->x_start[label].c[d]);
     }
-    energy -= now->mass * g * moved;
+    energy -= g * moved;
   }
   return energy;
 }
@@ -89,8 +96,9 @@ static void measure_energy(const struct snapshot *now, struct measures *out)
 {
   double v2 = 0;
   for (int i = 0; i < now->n; i++)
-    for (int d = 0; d < DIM; d++) v2 += (double)now->v[i].c[d] * (double)now->v[i].c[d];
-  const double kinetic = 0.5 * now->mass * v2, potential = potential_energy(now);
+    for (int d = 0; d < DIM; d++)
+      v2 += mass_of(now, i) * (double)now->v[i].c[d] * (double)now->v[i].c[d];
+  const double kinetic = 0.5 * v2, potential = potential_energy(now);
   MEASURE(out, kinetic_energy, kinetic);
   MEASURE(out, potential_energy, potential);
   MEASURE(out, total_energy, kinetic + potential);

@@ -13,6 +13,7 @@ extern "C" {
   S(ERR_MEMORY, 3, "out of memory")                                \
   S(ERR_IO, 2, "a file could not be read or written")              \
   S(ERR_RUN, 3, "the run failed")                                  \
+  S(ERR_WORSE, 1, "a comparison with a baseline failed")           \
   S(ERR_SKIPPED, 77, "skipped")
 
 #define S(code, exit_code, text) code,

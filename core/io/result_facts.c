@@ -129,6 +129,10 @@ static void put_totals(struct h5 *h, hid_t run, const struct run_facts *facts)
   h5_put_number(h, run,
                 (struct h5_label){"residual_last", "1", "relative residual of the last solve"},
                 facts->residual_last);
+  if (facts->pairs_visited > 0)
+    h5_put_number(h, run,
+                  (struct h5_label){"pairs_visited", "1", "neighbour pairs, by all sums over them"},
+                  facts->pairs_visited);
   h5_put_number(h, run, (struct h5_label){"time_end", "s", "simulated time reached"},
                 facts->time_end);
 }

@@ -131,6 +131,9 @@ static json_t *whole(const struct run_facts *f)
                                 (json_int_t)f->iterations.max, "total",
                                 (json_int_t)f->iterations.total));
   json_object_set_new(object, "residual", json_pack("{s:o}", "last", number(f->residual_last)));
+  json_object_set_new(object, "pairs",
+                      json_pack("{s:o}", "visited",
+                                f->pairs_visited > 0 ? json_real(f->pairs_visited) : json_null()));
   json_object_set_new(object, "metrics", metrics(f));
   json_object_set_new(object, "timing", timing(f));
   json_object_set_new(object, "memory", memory(f));

@@ -65,6 +65,7 @@ struct run_facts {
     double mean; /* per step */
     long max, total;
   } iterations;
+  double pairs_visited;       /* neighbour pairs, by all sums over them; 0: not counted */
   double residual_last;       /* relative; NaN where nothing was iterated */
   const struct fact *metrics; /* final values */
   int num_metrics;

@@ -18,6 +18,7 @@ struct pairs {
   vec period;   /* side of a periodic domain, 0 where it is open               [m] */
   int periodic; /* is any side periodic? */
   int rows, slots;
+  long *visits; /* pairs visited so far, by row; NULL: nobody counts                   [rows] */
 };
 
 /* A packet of up to LANES pairs (i, j). */
@@ -127,6 +128,7 @@ STAGE struct packet packet_first(const struct pairs *list, int i)
   ij.j = list->list;
   ij.x = NO_VECS;
   ij.r = NO_LANES;
+  if (list->visits) list->visits[i] += list->last[i] - list->first[i];
   return ij;
 }
 STAGE int packet_get(const struct pairs *list, struct packet *ij)

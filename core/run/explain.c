@@ -47,7 +47,9 @@ static void explain_features(const struct run *run)
   } abilities[] = {ABILITY_LIST(A)};
 #undef A
   const unsigned asked = scene_asks(&run->scene),
-                 features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC);
+                 features = CAN(WALLS) | CAN(GRAVITY) | CAN(XSPH) | CAN(PERIODIC) | CAN(VISCOSITY) |
+                            CAN(TENSION) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(BODIES) |
+                            CAN(EMITTERS);
   printf("features absent:");
   int absent = 0;
   for (int k = 0; k < NUM_ABILITIES; k++)

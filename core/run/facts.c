@@ -42,6 +42,7 @@ static void add_series(struct facts *f, const char *name, const char *unit, cons
 void facts_update(struct facts *f, const struct plan *plan, const struct run *run,
                   const struct record *r)
 {
+  f->run.particles = run->view->p.n;
   f->run.steps = run->step;
   f->run.time_end = run->time;
   f->run.series.columns = f->series;
@@ -114,5 +115,6 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
   f->run.timing.per_step = run->step > 0 ? work / (double)run->step : 0;
   f->run.timing.per_iteration =
     f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
+  f->run.pairs_visited = visits_total(run);
   end_memory(f, run);
 }

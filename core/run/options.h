@@ -27,6 +27,7 @@ enum { FOR_RUN = 1, FOR_SPEED = 2, FOR_LISTS = 4, FOR_MANY = FOR_RUN | FOR_SPEED
 #define SWITCH_LIST(O)                                                                     \
   O(quiet, "--quiet", FOR_RUN, "say nothing but errors")                                   \
   O(explain, "--explain", FOR_RUN, "say what the scene needed and what was left out")      \
+  O(count_pairs, "--count-pairs", FOR_RUN, "count the neighbour pairs that are visited")   \
   O(dry_run, "--dry-run", FOR_RUN, "resolve and check the request, run and write nothing") \
   O(help, "--help", FOR_ALL, "this text")
 

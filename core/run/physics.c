@@ -42,6 +42,44 @@ STAGE void xsph(const struct view *s, int i)
 }
 STAGE void add_change(const struct view *s, int i) { s->p.v[i] = plus(s->p.v[i], s->p.dv[i]); }
 
+/* --- rigid bodies */
+
+/* v_b = V + omega x (x_b - c) for the wall particles of bodies */
+STAGE void carry(const struct carrying *s, int k)
+{
+  const int b = s->p.n + k, body = (int)s->p.body[b];
+  if (body > 0) s->p.v[b] = body_velocity(&s->pose[body - 1], s->p.x[b]);
+}
+
+/* x_b = c + R arm_b */
+STAGE void place(const struct carrying *s, int k)
+{
+  const int b = s->p.n + k, body = (int)s->p.body[b];
+  if (body > 0) s->p.x[b] = body_point(&s->pose[body - 1], s->p.arm[b]);
+}
+
+/* What fluid particle i does to body `which` in a second, Akinci et al. 2012, Eq. (10):
+ * F_i = m_i sum_b m_b p_i/rho_i^2 grad_i W_ib;   here in p.dv */
+STAGE void push(const struct carrying *s, int i)
+{
+  const struct particles p = s->p;
+  vecs F = NO_VECS;
+  for_neighbours (s, i, ib) {
+    const lanes apart = of(p.body, ib) - (real)s->which;
+    const lanes mine = at_least(1 - apart * apart, 0); /* 1 for its particles, 0 for others */
+    F = add(F, scale(mine * of(p.m, ib), gradW(&s->nb, ib)));
+  }
+  p.dv[i] = times(p.m[i] * p.p[i] / sq(p.rho[i]), sum(F));
+}
+STAGE real push_along(const struct carrying *s, int i) { return s->p.dv[i].c[s->axis]; }
+/* (x_i - c) x F_i: the same torque as at x_b, since F_ib points along x_ib */
+STAGE real turn_about(const struct carrying *s, int i)
+{
+  const int a = DIM == 2 ? 0 : (s->axis + 1) % DIM, b = DIM == 2 ? 1 : (s->axis + 2) % DIM;
+  const vec arm = sub(s->p.x[i], s->pose[s->which - 1].centre), F = s->p.dv[i];
+  return arm.c[a] * F.c[b] - arm.c[b] * F.c[a];
+}
+
 STAGE real speed2(const struct view *s, int i) { return inner(s->p.v[i], s->p.v[i]); }
 STAGE real position_and_velocity(const struct view *s, int i)
 {
@@ -71,6 +109,34 @@ void physics_viscosity(struct view *s)
 {
   sweep(xsph, s);
   sweep(add_change, s);
+}
+
+static void take_view(struct carrying *s, const struct view *view)
+{
+  s->p = view->p;
+  s->nb = view->nb;
+}
+
+void physics_carry(const struct view *view, struct carrying *s)
+{
+  take_view(s, view);
+  sweep_over(carry, s, s->p.n_all - s->p.n);
+}
+
+void physics_place(const struct view *view, struct carrying *s)
+{
+  take_view(s, view);
+  sweep_over(place, s, s->p.n_all - s->p.n);
+}
+
+void physics_push(const struct view *view, struct carrying *s, double force[3], double torque[3])
+{
+  take_view(s, view);
+  for (int d = 0; d < 3; d++) force[d] = torque[d] = 0;
+  sweep(push, s);
+  for (s->axis = 0; s->axis < DIM; s->axis++) sum_over(push_along, s, s->p.n, &force[s->axis]);
+  for (s->axis = DIM == 2 ? 2 : 0; s->axis < 3; s->axis++)
+    sum_over(turn_about, s, s->p.n, &torque[s->axis]);
 }
 
 void physics_health(struct view *s, double *total, double *fastest)

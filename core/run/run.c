@@ -18,6 +18,12 @@ unsigned scene_asks(const struct scene *scene)
   unsigned asks = DIM == 2 ? CAN(2D) : CAN(3D);
   if (scene->n_wall > 0) asks |= CAN(WALLS);
   if (scene->common.xsph > 0) asks |= CAN(XSPH);
+  if (scene->num_bodies > 0) asks |= CAN(MOVING_WALLS);
+  for (int k = 0; k < scene->num_bodies; k++)
+    if (scene->body[k].density > 0) asks |= CAN(BODIES);
+  for (int k = 0; k < scene->num_fluids; k++)
+    if (scene->fluid[k].rho0 != scene->common.rho0) asks |= CAN(FLUIDS);
+  if (scene->num_emitters > 0) asks |= CAN(EMITTERS);
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
     if (scene->period.c[d] > 0)
@@ -42,6 +48,9 @@ static unsigned fields_needed(const struct solver *solver, unsigned asks)
 {
   unsigned needs = solver->needs | HAS(x) | HAS(v) | HAS(id);
   if (asks & CAN(XSPH)) needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
+  if (asks & CAN(FLUIDS)) needs |= HAS(light) | HAS(fluid);
+  if (asks & CAN(MOVING_WALLS)) needs |= HAS(body) | HAS(arm);
+  if (asks & CAN(BODIES)) needs |= HAS(m) | HAS(p) | HAS(rho) | HAS(dv);
   return needs;
 }
 
@@ -56,10 +65,27 @@ static void set_params(const struct solver *solver, const double *values, void *
 /* Copy one array of the scene into [begin, begin + n) of a field that may not exist. */
 static void upload(struct store *store, const char *name, const void *from, int begin, int n)
 {
-  struct store_field *f = store_find(store, name);
+  struct store_field *f = store_public(store, name);
   if (f && n > 0)
     memory_from_host((char *)f->data + f->row.bytes * (size_t)begin, from,
                      f->row.bytes * (size_t)n);
+}
+
+/* light_i = rho0/rho0_i and the number of its fluid, with `number` [all] and `label` [n] as room.
+ */
+static void upload_fluids(struct run *run, real *number, int *label)
+{
+  const struct scene *s = &run->scene;
+  if (s->num_fluids == 0) return;
+  for (int i = 0; i < s->n; i++) {
+    label[i] = i < s->num_fluid_of ? s->fluid_of[i] : 0;
+    number[i] = (real)(s->common.rho0 / s->fluid[label[i]].rho0);
+  }
+  upload(&run->store, "fluid", label, 0, s->n);
+  for (int i = 0; i < s->n_wall; i++) number[s->n + i] = 0;
+  upload(&run->store, "light", number, 0, s->n + s->n_wall);
+  for (int i = 0; i < s->n; i++) number[i] = (real)s->fluid[label[i]].viscosity;
+  upload(&run->store, "mu", number, 0, s->n);
 }
 
 static status upload_scene(struct run *run)
@@ -85,6 +111,7 @@ static status upload_scene(struct run *run)
   upload(&run->store, "normal", number, 0, s->n);
   for (int i = 0; i < s->n; i++) label[i] = i;
   upload(&run->store, "id", label, 0, s->n);
+  upload_fluids(run, number, label);
   free(number);
   free(label);
   return OK;
@@ -186,6 +213,9 @@ status run_create(const struct solver *solver, const double *solver_values, stru
   TRY(store_open(&run->store, solver, run->needs, run->scene.n, run->scene.n_wall, run->state));
   TRY(upload_scene(run));
   positions_bounds(run->scene.wall_x, run->scene.n_wall, &run->wall_low, &run->wall_high);
+  run->num_labels = run->scene.n;
+  TRY(walls_weigh(run));
+  TRY(bodies_start(run));
   return solver->start ? solver->start(run, run->state) : OK;
 }
 
@@ -224,7 +254,10 @@ status run_step(struct run *run)
 {
   begin_step(run);
   const enum phase before = clock_enter(PHASE_SOLVER);
-  const status result = run->solver->step(run, run->state);
+  status result = run->scene.num_emitters ? run_emit(run) : OK;
+  bodies_drive(run, run->time + run->dt / 2);
+  if (result == OK) result = run->solver->step(run, run->state);
+  if (result == OK) bodies_push(run, run->dt);
   run->time += run->dt;
   clock_enter(before);
   return finish_step(run, result);
@@ -286,6 +319,8 @@ void run_free(struct run *run)
 {
   if (!run) return;
   if (run->solver->stop && run->state) run->solver->stop(run, run->state);
+  bodies_free(run);
+  visits_free(run);
   particle_search.pair_list_free(&run->neighbours);
   for (int k = 0; k < MAX_PAIR_LISTS; k++) {
     particle_search.pair_list_free(&run->list[k]);

@@ -3,7 +3,9 @@
 #define RUN_H
 #include "../benchmark.h"
 #include "../solver.h"
+#include "bodies.h"
 #include "store.h"
+#include "visits.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -34,11 +36,15 @@ struct run {
     real *data;
     size_t capacity;
   } coefficients[MAX_PAIR_LISTS];
+  struct pair_visits *visits; /* NULL: pairs are not counted */
   int *order;
   int order_capacity;
   unsigned long long *keys;
   int keys_capacity;
   vec wall_low, wall_high;
+  struct body *body;          /* [scene.num_bodies], NULL without */
+  long layers[MOST_EMITTERS]; /* that each emitter has made */
+  int num_labels;             /* given so far */
   int have_grid, has_wall_rows, density_is_current;
 
   struct iterations iterations[MAX_ITERATIONS];
@@ -75,6 +81,13 @@ status run_project(struct run *run);
  * ERR_MEMORY. */
 status run_snapshot(struct run *run, struct snapshot *out);
 void snapshot_free(struct snapshot *snapshot);
+
+/* walls.c: masses of wall particles after Akinci et al. 2012 where the scene asks for them, and
+ * normals where it has none. Errors: ERR_MEMORY. */
+status walls_weigh(struct run *run);
+
+/* emit.c: particles that are due at the start of a step. Errors: ERR_MEMORY. */
+status run_emit(struct run *run);
 
 /* Bytes per fluid particle of everything that scales with them: fields, pair lists, coefficients,
  * cells. */

@@ -112,6 +112,7 @@ static status build_list(struct run *run, struct pair_list *list, enum pair_set 
   list->pairs.kernel = run->view->nb.kernel;
   list->pairs.xi = xi;
   list->pairs.xj = xj;
+  if (result == OK) result = visits_renew(run, list);
   *out = list->pairs;
   return result;
 }
@@ -122,13 +123,16 @@ status run_neighbours(struct run *run)
   const enum phase before = clock_enter(PHASE_NEIGHBOURS);
   if (scene_asks(&run->scene) & CAN(PERIODIC)) physics_wrap(s, run->scene.low, run->scene.period);
   struct grid grid;
+  if (run->body)
+    particle_search.positions_bounds(s->p.x + s->p.n, s->p.n_all - s->p.n, &run->wall_low,
+                                     &run->wall_high);
   status result = fit_grid(run, &grid);
   const int grid_changed = !run->have_grid || !same_grid(&grid, &s->grid);
   s->grid = grid;
   run->have_grid = 1;
   run->has_wall_rows = 0;
   run->density_is_current = 0;
-  if (result == OK && grid_changed && s->p.n_all > s->p.n) result = sort_walls(run);
+  if (result == OK && (grid_changed || run->body) && s->p.n_all > s->p.n) result = sort_walls(run);
   if (result == OK) result = sort_fluid(run);
   if (result == OK) result = build_list(run, &run->neighbours, SET_FLUID, SET_ALL, &s->nb);
   clock_enter(before);
@@ -205,6 +209,7 @@ status run_move(struct run *run)
 {
   const enum phase before = clock_enter(PHASE_INTEGRATE);
   physics_move(run->view);
+  bodies_move(run, (double)run->view->dt);
   clock_enter(before);
   return OK;
 }

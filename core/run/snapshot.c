@@ -33,7 +33,7 @@ static const struct pairs *build_pairs(const struct snapshot *now)
  * field, or n is 0; *lost is set if there is no memory. */
 static void *download(struct run *run, const char *name, int n, int *lost)
 {
-  struct store_field *f = store_find(&run->store, name);
+  struct store_field *f = store_public(&run->store, name);
   if (!f || n == 0) return NULL;
   void *copy = malloc(f->row.bytes * (size_t)(n + 1) + 64);
   if (copy) memory_to_host(copy, f->data, f->row.bytes * (size_t)n);
@@ -113,6 +113,7 @@ static status sort_all(struct snapshot *out, struct cache *cache, int *order)
   out->x = reorder((void *)out->x, order, n, out->n_all, sizeof(vec), &lost);
   out->v = reorder((void *)out->v, order, n, out->n_all, sizeof(vec), &lost);
   out->id = reorder((void *)out->id, order, n, n, sizeof(int), &lost);
+  out->light = reorder((void *)out->light, order, n, n, sizeof(real), &lost);
   out->p = reorder((void *)out->p, order, n, n, sizeof(real), &lost);
   out->rho = reorder((void *)out->rho, order, n, n, sizeof(real), &lost);
   if (lost) return status_set(ERR_MEMORY, "no memory for a snapshot");
@@ -131,6 +132,7 @@ status run_snapshot(struct run *run, struct snapshot *out)
   out->x = download(run, "x", all, &lost);
   out->v = download(run, "v", all, &lost);
   out->id = download(run, "id", out->n, &lost);
+  out->light = download(run, "light", out->n, &lost);
   out->p = download(run, "p", computed, &lost);
   out->rho = download(run, "rho", computed, &lost);
   const status result =
@@ -153,6 +155,7 @@ void snapshot_free(struct snapshot *s)
   free((void *)s->v);
   free((void *)s->id);
   free((void *)s->p);
+  free((void *)s->light);
   free((void *)s->rho);
   memset(s, 0, sizeof *s);
 }

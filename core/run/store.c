@@ -1,5 +1,6 @@
 #include "store.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "../base/memory.h"
@@ -104,6 +105,41 @@ status store_resize_virtual(struct store *store, int n)
   return OK;
 }
 
+/* The field in a block for `n` fluid particles more, with room for growth. */
+static status insert_into(struct store *store, struct store_field *f, int n)
+{
+  const size_t size = f->row.bytes, old = size * (size_t)store->count[f->row.where];
+  const size_t before = size * (size_t)store->count[FLUID], more = size * (size_t)n;
+  const size_t wanted = old + more + size, capacity = f->capacity;
+  const size_t room = wanted <= capacity ? capacity : wanted + wanted / 4;
+  char *to = memory_take(room), *from = f->data;
+  void *nothing = calloc(1, more);
+  if (to && nothing) {
+    memory_copy(to, from, before);
+    memory_from_host(to + before, nothing, more);
+    if (old > before) memory_copy(to + before + more, from + before, old - before);
+    memory_give(from, capacity);
+    drop_spare(store, capacity);
+    f->data = to;
+    f->capacity = room;
+    publish(store, f);
+  }
+  const int done = to && nothing;
+  if (!done) memory_give(to, room);
+  free(nothing);
+  return done ? OK : status_set(ERR_MEMORY, "no memory for field '%s'", f->row.name);
+}
+
+status store_insert_fluid(struct store *store, int n)
+{
+  for (int k = 0; k < store->num_fields; k++)
+    if (store->field[k].row.where != VIRTUAL) TRY(insert_into(store, &store->field[k], n));
+  store->count[FLUID] += n;
+  store->count[ALL] += n;
+  store->count[WALL] += n;
+  return OK;
+}
+
 static status permute_field(struct store *store, struct store_field *f, const int *order, int begin,
                             int n)
 {
@@ -148,6 +184,14 @@ struct store_field *store_find(struct store *store, const char *name)
 {
   for (int k = 0; k < store->num_fields; k++)
     if (strcmp(store->field[k].row.name, name) == 0) return &store->field[k];
+  return NULL;
+}
+
+struct store_field *store_public(struct store *store, const char *name)
+{
+  for (int k = 0; k < store->num_fields; k++)
+    if (store->field[k].is_public && strcmp(store->field[k].row.name, name) == 0)
+      return &store->field[k];
   return NULL;
 }
 

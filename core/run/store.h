@@ -33,6 +33,10 @@ status store_open(struct store *store, const struct solver *solver, unsigned nee
 /* Change the number of virtual particles. Errors: ERR_MEMORY. */
 status store_resize_virtual(struct store *store, int n);
 
+/* Make room for n more fluid particles behind the last one: all their entries are 0, wall particles
+ * keep theirs. Errors: ERR_MEMORY. */
+status store_insert_fluid(struct store *store, int n);
+
 /* Sort the KEPT entries [begin, begin + n) of the fields in `where_mask` (bits 1 << enum
  * field_where). Errors: ERR_MEMORY. */
 status store_permute(struct store *store, unsigned where_mask, const int *order, int begin, int n);
@@ -42,6 +46,8 @@ void store_poison(struct store *store);
 
 /* The field's data (host code: copy through memory_to_host), NULL if it is not there. */
 struct store_field *store_find(struct store *store, const char *name);
+/* Of the public fields only: a solver may have one of its own by the same name. */
+struct store_field *store_public(struct store *store, const char *name);
 
 /* Bytes per element of all fields of that kind, spare room included. */
 size_t store_bytes(const struct store *store);

@@ -149,6 +149,18 @@ static json_t *measures_json(const unsigned *measures)
   return array;
 }
 
+/* The metric that is the error of a run against the scene's truth; NULL: it has none. */
+static const char *main_error(const struct benchmark *b)
+{
+  if (b->judged_by) return metric_names[b->judged_by];
+  for (int k = NUM_GENERAL_METRICS; k < NUM_METRICS; k++) {
+    const size_t length = strlen(metric_names[k]);
+    const int is_error = length > 6 && strcmp(metric_names[k] + length - 6, "_error") == 0;
+    if (is_error && b->measures[k / 32] >> (k % 32) & 1u) return metric_names[k];
+  }
+  return NULL;
+}
+
 static void show_scene(const struct benchmark *b, int json)
 {
   struct scene_params common;
@@ -160,16 +172,17 @@ static void show_scene(const struct benchmark *b, int json)
     json_t *own = params_json(b->params, b->num_params, 0, NULL);
     json_array_extend(parameters, own);
     json_decref(own);
-    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o}", "kind", "scene", "name",
+    print_json(json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:s?}", "kind", "scene", "name",
                          b->name, "about", b->about, "source", b->source, "parameters", parameters,
                          "asks", abilities_json(b->asks), "dims", dims_json(b->dims), "metrics",
-                         measures_json(b->measures)));
+                         measures_json(b->measures), "error", main_error(b)));
     return;
   }
   printf("%s: %s\n  %s\n", b->name, b->about, b->source);
   print_params("parameters of every scene, with this scene's defaults", scene_param_rows,
                num_scene_params, &common);
   print_params("its own parameters", b->params, b->num_params, NULL);
+  printf("judged by: %s\n", main_error(b) ? main_error(b) : "nothing, it has no truth");
 }
 
 static void show_metric(int k, int json)

@@ -70,7 +70,7 @@ static status write_frame(struct session *s, const struct snapshot *now)
   int n = 2;
   if (now->p)
     arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), now->p};
-  else if (store_find(&s->run->store, "p")) /* at the start: every frame has the same arrays */
+  else if (store_public(&s->run->store, "p")) /* at the start: every frame has the same arrays */
     arrays[n++] = (struct result_array){"pressure", "Pa", "pressure", 1, real_type(), NULL};
   arrays[n++] =
     (struct result_array){"id", "1", "label given at the start", 1, RESULT_INT, now->id};
@@ -84,10 +84,11 @@ static status write_frame(struct session *s, const struct snapshot *now)
   for (int k = 0; k < n; k++)
     if (!arrays[k].data) arrays[k].data = none;
   const struct result_set fluid = {now->n, order, n, arrays};
-  const struct fact numbers[] = {
+  struct fact numbers[2 + MOST_BODIES * BODY_NUMBERS] = {
     {"step", "1", "number of steps so far", (double)now->step, NULL},
     {"iterations", "1", "of the last step", s->run->step_iterations, NULL}};
-  const status result = result_file_add_frame(s->file, now->time, &fluid, 2, numbers);
+  const int num = 2 + bodies_report(s->run, numbers + 2);
+  const status result = result_file_add_frame(s->file, now->time, &fluid, num, numbers);
   free(order);
   free(none);
   return result;
@@ -321,6 +322,7 @@ status verb_run(const struct options *o)
   TRY(option_whole("--threads", o->threads, 1, 1024, omp_get_max_threads(), &threads));
   TRY(option_whole("--frames", o->frames, 1, 1000000, 50, &s.frames));
   omp_set_num_threads((int)threads);
+  visits_wanted = o->count_pairs;
   h5_start(); /* HDF5 crashes where it finds no memory to start in */
   int other_dim = 0;
   status result = plan_make(o, &s.plan, &other_dim);

@@ -11,83 +11,19 @@
 #include "ceilings.h"
 #include "driver.h"
 #include "facts.h"
+#include "speed_heap.h"
 
-enum { DEFAULT_PARTICLES = 50000, STEPS = 10, ROUNDS = 5, FEW = 2, MANY = 12 };
-#define SUPPORT 2.0 /* dx: four particle radii */
+enum { DEFAULT_PARTICLES = 50000, FEW = 2, MANY = 12 };
 
 struct speed_case {
   const char *solver;
   int particles, walls;
   double neighbours_mean, neighbours, iteration, step, bytes_per_particle; /* us per particle */
   double mean_iterations;
-  double fraction;  /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
+  double fraction; /* of the bandwidth ceiling that an iteration's compulsory traffic needs */
+  struct equal_case equal;
   char reason[256]; /* why there is no time; "": there is one */
 };
-
-/* A heap: a block of fluid on the floor of a box, its lattice disturbed, as it lies after settling.
- */
-static status heap(struct scene *scene, int particles)
-{
-  const int side = (int)lround(pow(particles, 1.0 / DIM));
-  memset(scene, 0, sizeof *scene);
-  for (int k = 0; k < num_scene_params; k++)
-    *(double *)((char *)&scene->common + scene_param_rows[k].offset) = scene_param_rows[k].initial;
-  scene->common.spacing = 0.05;
-  scene->common.support = SUPPORT;
-  scene->common.dt = 1e-3;
-  scene->common.jitter = 0.05;
-  scene->common.kernel = KERNEL_CUBIC;
-  scene->seed = 1;
-  scene->gravity = zero();
-  scene->gravity.c[DIM - 1] = (real)-scene->common.gravity;
-  vec low = zero(), high = zero();
-  for (int d = 0; d < DIM; d++) high.c[d] = (real)(scene->common.spacing * side);
-  TRY(scene_fill_box(scene, low, high, zero(), NULL));
-  scene_apply_jitter(scene);
-  vec top = high;
-  top.c[DIM - 1] = 2 * high.c[DIM - 1];
-  TRY(scene_wall_box(scene, low, top, 2, 1));
-  for (int d = 0; d < DIM; d++) {
-    scene->low.c[d] = low.c[d] - 10 * (real)scene->common.spacing;
-    scene->high.c[d] = top.c[d] + 10 * (real)scene->common.spacing;
-  }
-  return OK;
-}
-
-/* Seconds per step, the best of ROUNDS times STEPS; *search gets those of the neighbour search
- * alone. */
-static status time_steps(struct run *run, double *step, double *search)
-{
-  *step = *search = 1e300;
-  for (int round = 0; round < ROUNDS; round++) {
-    double before[NUM_PHASES], after[NUM_PHASES];
-    clock_phases(before);
-    const double begun = clock_now();
-    for (int k = 0; k < STEPS; k++) TRY(run_step(run));
-    const double each = (clock_now() - begun) / STEPS;
-    clock_phases(after);
-    const double nb = (after[PHASE_NEIGHBOURS] - before[PHASE_NEIGHBOURS]) / STEPS;
-    if (each < *step) *step = each;
-    if (nb < *search) *search = nb;
-  }
-  return run->diverged
-           ? status_set(ERR_RUN, "the heap diverged with '%s': %s", run->solver->name, run->reason)
-           : OK;
-}
-
-/* A run on the heap with so many fixed iterations (0: the solver's own stopping rule). */
-static status open_run(const struct solver *solver, int particles, int iterations, struct run **run)
-{
-  struct scene scene;
-  double values[64];
-  TRY(heap(&scene, particles));
-  for (int k = 0; k < solver->num_params && k < 64; k++) values[k] = solver->params[k].initial;
-  const struct param *fixed = param_find(solver->params, solver->num_params, "fixed_iterations");
-  if (fixed) values[fixed - solver->params] = iterations;
-  TRY(run_create(solver, values, &scene, 0, run));
-  for (int k = 0; k < STEPS; k++) TRY(run_step(*run)); /* warm up and settle */
-  return OK;
-}
 
 static double iterations_per_step(const struct run *run)
 {
@@ -101,8 +37,8 @@ static status time_solver(const struct solver *solver, int particles, double ban
 {
   struct run *run = NULL;
   double few, many, search, unused, few_iterations;
-  status result = open_run(solver, particles, FEW, &run);
-  if (result == OK) result = time_steps(run, &few, &search);
+  status result = heap_open(solver, particles, FEW, 0, &run);
+  if (result == OK) result = heap_time(run, &few, &search);
   if (result == OK) {
     const double us = 1e6 / run->view->p.n;
     c->solver = solver->name;
@@ -123,8 +59,8 @@ static status time_solver(const struct solver *solver, int particles, double ban
   few_iterations = run ? iterations_per_step(run) : 0;
   run_free(run);
   run = NULL;
-  if (result == OK) result = open_run(solver, particles, MANY, &run);
-  if (result == OK) result = time_steps(run, &many, &unused);
+  if (result == OK) result = heap_open(solver, particles, MANY, 0, &run);
+  if (result == OK) result = heap_time(run, &many, &unused);
   if (result == OK) {
     c->mean_iterations = few_iterations;
     const double more = iterations_per_step(run) - few_iterations;
@@ -135,7 +71,7 @@ static status time_solver(const struct solver *solver, int particles, double ban
     c->fraction = bandwidth > 0 ? bytes / bandwidth / (1e-6 * c->iteration) : (double)NAN;
   }
   run_free(run);
-  return result;
+  return result == OK ? heap_at_equal_error(solver, particles, &c->equal) : result;
 }
 
 static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
@@ -154,6 +90,10 @@ static status write_json(const char *path, const struct provenance *p, const str
     json_object_set_new(row, "step_iterations", number(c[k].mean_iterations));
     json_object_set_new(row, "bytes_per_particle", number(c[k].bytes_per_particle));
     json_object_set_new(row, "fraction_of_ceiling", number(c[k].fraction));
+    json_object_set_new(row, "equal_step_us_per_particle", number(c[k].equal.step));
+    json_object_set_new(row, "equal_density_error", number(c[k].equal.error));
+    json_object_set_new(row, "equal_tolerance", number(c[k].equal.tolerance));
+    json_object_set_new(row, "equal_iterations", number(c[k].equal.iterations));
     if (c[k].reason[0]) json_object_set_new(row, "reason", json_string(c[k].reason));
     json_array_append_new(cases, row);
   }
@@ -200,15 +140,20 @@ static void print_heading(const struct provenance *p, const struct ceilings *top
     "heap, support %.1f dx; us per particle; a step has %d iterations of each solve where they "
     "can be fixed\n",
     SUPPORT, FEW);
-  printf("%-10s %9s %6s %10s %10s %8s %6s %10s %8s\n", "solver", "particles", "nbrs", "neighbours",
-         "iteration", "step", "iters", "B/particle", "ceiling");
+  printf(
+    "equal: the step where the mean compression stays below %.1f %%, the iterations it takes, and "
+    "that compression\n",
+    100 * EQUAL_ERROR);
+  printf("%-12s %9s %6s %10s %10s %8s %6s %10s %8s %8s %6s %9s\n", "solver", "particles", "nbrs",
+         "neighbours", "iteration", "step", "iters", "B/particle", "ceiling", "equal", "iters",
+         "achieved");
 }
 
 static void print_case(const struct speed_case *c)
 {
-  printf("%-10s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f\n", c->solver, c->particles,
-         c->neighbours_mean, c->neighbours, c->iteration, c->step, c->mean_iterations,
-         c->bytes_per_particle, c->fraction);
+  printf("%-12s %9d %6.1f %10.3f %10.3f %8.3f %6.1f %10.1f %8.2f %8.3f %6.1f %9.2g\n", c->solver,
+         c->particles, c->neighbours_mean, c->neighbours, c->iteration, c->step, c->mean_iterations,
+         c->bytes_per_particle, c->fraction, c->equal.step, c->equal.iterations, c->equal.error);
   if (c->reason[0]) printf("  %s\n", c->reason);
   fflush(stdout);
 }
@@ -232,6 +177,7 @@ status verb_speed(const struct options *o)
     memset(&cases[n], 0, sizeof cases[n]);
     cases[n].solver = solvers[k]->name;
     cases[n].iteration = cases[n].fraction = cases[n].step = (double)NAN;
+    cases[n].equal = (struct equal_case){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
     const status result = time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]);
     if (result == ERR_RUN) /* a result: shown as a gap */
       snprintf(cases[n].reason, sizeof cases[n].reason, "%s", status_sentence());

@@ -83,6 +83,10 @@ void scene_free(struct scene *scene)
   free(scene->wall_x);
   free(scene->wall_v);
   free(scene->wall_n);
+  free(scene->fluid_of);
+  free(scene->body_of);
+  scene->fluid_of = scene->body_of = NULL;
+  scene->num_fluid_of = scene->num_body_of = 0;
   scene->x = scene->v = scene->wall_x = scene->wall_v = scene->wall_n = NULL;
   scene->n = scene->n_wall = scene->capacity = scene->wall_capacity = 0;
 }
@@ -91,6 +95,7 @@ void scene_free(struct scene *scene)
 
 int scene_wall_layers(const struct scene *scene)
 {
+  if (scene->common.walls == WALLS_AKINCI) return 1;
   return (int)ceil(scene->common.support - 1e-9) + 1;
 }
 

@@ -7,24 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../base/yaml_source.h"
-#include "scene_schema.h"
+#include "scene_file_inside.h"
 
-struct scene_file {
-  struct yaml_source *yaml;
-  struct file_scene *said;
-  char *name;
-  struct scene_params values; /* of the params that the file gives */
-  unsigned given;             /* bit k: row k of scene_param_rows */
-};
-
-enum { KEY_ROOM = 96, MOST_LAYERS = 100 };
-
-/* "fluid[3].box" and the like */
-static void key_of(char key[KEY_ROOM], const char *list, unsigned k, const char *rest)
-{
-  snprintf(key, KEY_ROOM, "%s[%u]%s", list, k + 1, rest);
-}
+enum { MOST_LAYERS = 100 };
 
 /* --- checks that the schema cannot make; each names its place --- */
 
@@ -80,17 +65,17 @@ static status check_motion(const struct scene_file *f, const char *key, const st
   return check_vector(f, inside, "centre", s->rotation->centre_count);
 }
 
-static status check_shape(const struct scene_file *f, unsigned k)
+static status check_shape(const struct scene_file *f, const char *list, unsigned k,
+                          const struct file_shape *s)
 {
-  const struct file_shape *s = &f->said->fluid[k];
   const int shapes = !!s->box + !!s->disc + !!s->ball + !!s->polygon;
   char key[KEY_ROOM];
-  key_of(key, "fluid", k, "");
+  key_of(key, list, k, "");
   if (shapes != 1)
     return yaml_source_refuse(
       f->yaml, key, "%s has %d shapes, allowed is one of box, disc, ball, polygon", key, shapes);
   TRY(check_motion(f, key, s));
-  key_of(key, "fluid", k, s->box ? ".box" : s->disc ? ".disc" : s->ball ? ".ball" : ".polygon");
+  key_of(key, list, k, s->box ? ".box" : s->disc ? ".disc" : s->ball ? ".ball" : ".polygon");
   if (s->disc && f->said->dim == 3)
     return yaml_source_refuse(f->yaml, key, "%s is given, allowed in 3-D is ball", key);
   if (s->ball && f->said->dim == 2)
@@ -100,17 +85,86 @@ static status check_shape(const struct scene_file *f, unsigned k)
   return check_ball(f, key, s->disc ? s->disc : s->ball);
 }
 
+/* "a number of key, if given, is more than 0 (or not below it)" */
+static status check_positive(const struct scene_file *f, const char *list, unsigned k,
+                             const char *name, const double *number, int zero_too)
+{
+  char key[KEY_ROOM], rest[32];
+  if (!number || *number > 0 || (zero_too && *number == 0)) return OK;
+  snprintf(rest, sizeof rest, ".%s", name);
+  key_of(key, list, k, rest);
+  return yaml_source_refuse(f->yaml, key, "%s is %g, allowed is %s", key, *number,
+                            zero_too ? "0 or more" : "more than 0");
+}
+
+static status check_moving(const struct scene_file *f, const char *list, unsigned k,
+                           const struct file_motion *m)
+{
+  char key[KEY_ROOM];
+  const unsigned spins = f->said->dim == 2 ? 1 : 3;
+  if (!m) return OK;
+  key_of(key, list, k, ".motion");
+  if (m->velocity) TRY(check_vector(f, key, "velocity", m->velocity_count));
+  if (m->centre) TRY(check_vector(f, key, "centre", m->centre_count));
+  if (m->spin && m->spin_count != spins)
+    return yaml_source_refuse(f->yaml, key, "%s.spin has %u entries, allowed are %u as dim is %d",
+                              key, m->spin_count, spins, f->said->dim);
+  return check_positive(f, list, k, "motion.period", m->period, 0);
+}
+
 static status check_wall(const struct scene_file *f, unsigned k)
 {
   const struct file_wall_box *b = f->said->walls[k].box;
   const struct file_box box = {b->low, b->high, b->low_count, b->high_count};
   char key[KEY_ROOM];
+  TRY(check_moving(f, "walls", k, f->said->walls[k].motion));
   key_of(key, "walls", k, ".box");
   TRY(check_box(f, key, &box));
   if (!b->layers || (*b->layers >= 1 && *b->layers <= MOST_LAYERS)) return OK;
   key_of(key, "walls", k, ".box.layers");
   return yaml_source_refuse(f->yaml, key, "%s is %d, allowed are 1 to %d", key, *b->layers,
                             MOST_LAYERS);
+}
+
+static status check_fluid(const struct scene_file *f, unsigned k)
+{
+  const struct file_shape *s = &f->said->fluid[k];
+  TRY(check_shape(f, "fluid", k, s));
+  TRY(check_positive(f, "fluid", k, "rho0", s->rho0, 0));
+  return check_positive(f, "fluid", k, "viscosity", s->viscosity, 1);
+}
+
+static status check_body(const struct scene_file *f, unsigned k)
+{
+  const struct file_shape *s = &f->said->bodies[k];
+  char key[KEY_ROOM];
+  TRY(check_shape(f, "bodies", k, s));
+  TRY(check_positive(f, "bodies", k, "density", s->density, 0));
+  TRY(check_moving(f, "bodies", k, s->motion));
+  if (!s->density || !s->motion || !s->motion->period) return OK;
+  key_of(key, "bodies", k, ".motion.period");
+  return yaml_source_refuse(f->yaml, key,
+                            "%s is given, allowed only for a body without density, whose motion is "
+                            "prescribed",
+                            key);
+}
+
+static status check_emitter(const struct scene_file *f, unsigned k)
+{
+  const struct file_emitter *e = &f->said->emitters[k];
+  char key[KEY_ROOM];
+  key_of(key, "emitters", k, "");
+  TRY(check_vector(f, key, "centre", e->centre_count));
+  TRY(check_vector(f, key, "direction", e->direction_count));
+  TRY(check_positive(f, "emitters", k, "width", &e->width, 0));
+  TRY(check_positive(f, "emitters", k, "speed", &e->speed, 0));
+  TRY(check_positive(f, "emitters", k, "begin", e->begin, 1));
+  TRY(check_positive(f, "emitters", k, "rho0", e->rho0, 0));
+  TRY(check_positive(f, "emitters", k, "viscosity", e->viscosity, 1));
+  if (f->said->dim == 2 || !e->depth == (e->round && *e->round)) return OK;
+  return yaml_source_refuse(f->yaml, key,
+                            "%s is %s, allowed in 3-D is one of depth and round: true", key,
+                            e->depth ? "round and has a depth" : "neither round nor has a depth");
 }
 
 static status check_domain(const struct scene_file *f)
@@ -137,13 +191,6 @@ static status check_domain(const struct scene_file *f)
 static double *value_of(struct scene_params *values, int k)
 {
   return (double *)((char *)values + scene_param_rows[k].offset);
-}
-
-static double length_of(const double *a, unsigned n)
-{
-  double sum = 0;
-  for (unsigned d = 0; d < n; d++) sum += a[d] * a[d];
-  return sqrt(sum);
 }
 
 /* The file's gravity is a parameter too: its length, which a user may change. */
@@ -201,8 +248,10 @@ static status check_all(struct scene_file *f, const char *path)
   TRY(take_name(f, path));
   TRY(take_params(f));
   TRY(check_domain(f));
-  for (unsigned k = 0; k < s->fluid_count; k++) TRY(check_shape(f, k));
+  for (unsigned k = 0; k < s->fluid_count; k++) TRY(check_fluid(f, k));
   for (unsigned k = 0; k < s->walls_count; k++) TRY(check_wall(f, k));
+  for (unsigned k = 0; k < s->bodies_count; k++) TRY(check_body(f, k));
+  for (unsigned k = 0; k < s->emitters_count; k++) TRY(check_emitter(f, k));
   return OK;
 }
 
@@ -246,97 +295,4 @@ void scene_file_free(struct scene_file *file)
   yaml_source_free(file->yaml, file->said);
   free(file->name);
   free(file);
-}
-
-/* --- filling --- */
-
-static vec vector(const double *a)
-{
-  vec v = zero();
-  for (int d = 0; d < DIM && a; d++) v.c[d] = (real)a[d];
-  return v;
-}
-
-static status fill_shape(struct scene *scene, const struct file_shape *s)
-{
-  const vec v = vector(s->velocity);
-  const struct file_ball *ball = s->disc ? s->disc : s->ball;
-  if (s->box) return scene_fill_box(scene, vector(s->box->low), vector(s->box->high), v, NULL);
-  if (ball) return scene_fill_disc(scene, vector(ball->centre), ball->radius, v);
-  const struct file_polygon *p = s->polygon;
-  return scene_fill_polygon(scene, (const double(*)[2])p->corners, (int)p->corners_count,
-                            p->z ? p->z[0] : 0, p->z ? p->z[1] : 0, v);
-}
-
-/* v += omega e_z x (x - centre), for the particles from `first` on */
-static void rotate(struct scene *scene, int first, const struct file_rotation *r)
-{
-  for (int i = first; r && i < scene->n; i++) {
-    const double x = (double)scene->x[i].c[0] - r->centre[0];
-    const double y = (double)scene->x[i].c[1] - r->centre[1];
-    scene->v[i].c[0] = (real)((double)scene->v[i].c[0] - r->omega * y);
-    scene->v[i].c[1] = (real)((double)scene->v[i].c[1] + r->omega * x);
-  }
-}
-
-static status build_wall(struct scene *scene, const struct file_wall_box *b)
-{
-  const int layers = b->layers ? *b->layers : scene_wall_layers(scene);
-  return scene_wall_box(scene, vector(b->low), vector(b->high), layers,
-                        b->open_top && *b->open_top);
-}
-
-/* An error of filling, with the place of its shape put in front. */
-static status with_place(const struct scene_file *f, const char *list, unsigned k, status result)
-{
-  char key[KEY_ROOM], sentence[1024];
-  if (result != ERR_USER) return result;
-  key_of(key, list, k, "");
-  snprintf(sentence, sizeof sentence, "%s", status_sentence());
-  return yaml_source_refuse(f->yaml, key, "%s: %s", key, sentence);
-}
-
-/* Without a domain in the file: as much room on every side as the whole scene is wide. */
-static void set_domain(const struct scene_file *f, struct scene *scene)
-{
-  const struct file_domain *d = f->said->domain;
-  double widest = 10 * scene->common.spacing;
-  if (d) {
-    scene->low = vector(d->low);
-    scene->high = vector(d->high);
-    scene->period = vector(d->period);
-    return;
-  }
-  scene_domain_around(scene, 0);
-  for (int k = 0; k < DIM; k++) {
-    const double side = (double)(scene->high.c[k] - scene->low.c[k]);
-    if (side > widest) widest = side;
-  }
-  scene_domain_around(scene, widest);
-}
-
-static void set_gravity(const struct scene_file *f, struct scene *scene)
-{
-  const double length = f->said->gravity ? length_of(f->said->gravity, f->said->gravity_count) : 0;
-  if (!f->said->gravity) return;
-  scene->gravity = zero();
-  if (length > 0)
-    scene->gravity = times((real)(scene->common.gravity / length), vector(f->said->gravity));
-}
-
-status scene_file_build(struct scene_file *file, struct scene *scene)
-{
-  const struct file_scene *s = file->said;
-  if (s->dim != DIM)
-    return yaml_source_refuse(file->yaml, "dim", "dim is %d, asked is a run in %d-D", s->dim, DIM);
-  for (unsigned k = 0; k < s->fluid_count; k++) {
-    const int first = scene->n;
-    TRY(with_place(file, "fluid", k, fill_shape(scene, &s->fluid[k])));
-    rotate(scene, first, s->fluid[k].rotation);
-  }
-  for (unsigned k = 0; k < s->walls_count; k++)
-    TRY(with_place(file, "walls", k, build_wall(scene, s->walls[k].box)));
-  set_domain(file, scene);
-  set_gravity(file, scene);
-  return OK;
 }

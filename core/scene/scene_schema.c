@@ -39,17 +39,57 @@ static const cyaml_schema_field_t rotation_fields[] = {
   CYAML_FIELD_END,
 };
 
-static const cyaml_schema_field_t shape_fields[] = {
-  CYAML_FIELD_MAPPING_PTR("box", LEFT_OUT, struct file_shape, box, box_fields),
-  CYAML_FIELD_MAPPING_PTR("disc", LEFT_OUT, struct file_shape, disc, ball_fields),
-  CYAML_FIELD_MAPPING_PTR("ball", LEFT_OUT, struct file_shape, ball, ball_fields),
-  CYAML_FIELD_MAPPING_PTR("polygon", LEFT_OUT, struct file_shape, polygon, polygon_fields),
-  VECTOR(velocity, LEFT_OUT, struct file_shape),
-  CYAML_FIELD_MAPPING_PTR("rotation", LEFT_OUT, struct file_shape, rotation, rotation_fields),
+static const cyaml_schema_field_t motion_fields[] = {
+  VECTOR(velocity, LEFT_OUT, struct file_motion),
+  CYAML_FIELD_SEQUENCE("spin", LEFT_OUT, struct file_motion, spin, &number, 1, 3),
+  VECTOR(centre, LEFT_OUT, struct file_motion),
+  CYAML_FIELD_FLOAT_PTR("period", LEFT_OUT, struct file_motion, period),
   CYAML_FIELD_END,
 };
-static const cyaml_schema_value_t shape = {
-  CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct file_shape, shape_fields),
+
+#define SHAPES                                                                       \
+  CYAML_FIELD_MAPPING_PTR("box", LEFT_OUT, struct file_shape, box, box_fields),      \
+    CYAML_FIELD_MAPPING_PTR("disc", LEFT_OUT, struct file_shape, disc, ball_fields), \
+    CYAML_FIELD_MAPPING_PTR("ball", LEFT_OUT, struct file_shape, ball, ball_fields), \
+    CYAML_FIELD_MAPPING_PTR("polygon", LEFT_OUT, struct file_shape, polygon, polygon_fields)
+
+static const cyaml_schema_field_t fluid_fields[] = {
+  SHAPES,
+  VECTOR(velocity, LEFT_OUT, struct file_shape),
+  CYAML_FIELD_MAPPING_PTR("rotation", LEFT_OUT, struct file_shape, rotation, rotation_fields),
+  CYAML_FIELD_FLOAT_PTR("rho0", LEFT_OUT, struct file_shape, rho0),
+  CYAML_FIELD_FLOAT_PTR("viscosity", LEFT_OUT, struct file_shape, viscosity),
+  CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t fluid = {
+  CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct file_shape, fluid_fields),
+};
+
+static const cyaml_schema_field_t body_fields[] = {
+  SHAPES,
+  CYAML_FIELD_FLOAT_PTR("density", LEFT_OUT, struct file_shape, density),
+  CYAML_FIELD_MAPPING_PTR("motion", LEFT_OUT, struct file_shape, motion, motion_fields),
+  CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t body = {
+  CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct file_shape, body_fields),
+};
+
+static const cyaml_schema_field_t emitter_fields[] = {
+  VECTOR(centre, CYAML_FLAG_POINTER, struct file_emitter),
+  VECTOR(direction, CYAML_FLAG_POINTER, struct file_emitter),
+  CYAML_FIELD_FLOAT("width", CYAML_FLAG_DEFAULT, struct file_emitter, width),
+  CYAML_FIELD_FLOAT_PTR("depth", LEFT_OUT, struct file_emitter, depth),
+  CYAML_FIELD_BOOL_PTR("round", LEFT_OUT, struct file_emitter, round),
+  CYAML_FIELD_FLOAT("speed", CYAML_FLAG_DEFAULT, struct file_emitter, speed),
+  CYAML_FIELD_FLOAT_PTR("begin", LEFT_OUT, struct file_emitter, begin),
+  CYAML_FIELD_FLOAT_PTR("end", LEFT_OUT, struct file_emitter, end),
+  CYAML_FIELD_FLOAT_PTR("rho0", LEFT_OUT, struct file_emitter, rho0),
+  CYAML_FIELD_FLOAT_PTR("viscosity", LEFT_OUT, struct file_emitter, viscosity),
+  CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t emitter = {
+  CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct file_emitter, emitter_fields),
 };
 
 static const cyaml_schema_field_t wall_box_fields[] = {
@@ -61,6 +101,7 @@ static const cyaml_schema_field_t wall_box_fields[] = {
 };
 static const cyaml_schema_field_t wall_fields[] = {
   CYAML_FIELD_MAPPING_PTR("box", CYAML_FLAG_POINTER, struct file_wall, box, wall_box_fields),
+  CYAML_FIELD_MAPPING_PTR("motion", LEFT_OUT, struct file_wall, motion, motion_fields),
   CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t wall = {
@@ -88,9 +129,12 @@ static const cyaml_schema_field_t scene_fields[] = {
   CYAML_FIELD_MAPPING_PTR("params", LEFT_OUT, struct file_scene, params, params_fields),
   VECTOR(gravity, LEFT_OUT, struct file_scene),
   CYAML_FIELD_MAPPING_PTR("domain", LEFT_OUT, struct file_scene, domain, domain_fields),
-  CYAML_FIELD_SEQUENCE("fluid", CYAML_FLAG_POINTER, struct file_scene, fluid, &shape, 1,
+  CYAML_FIELD_SEQUENCE("fluid", CYAML_FLAG_POINTER, struct file_scene, fluid, &fluid, 1,
                        MOST_SHAPES),
   CYAML_FIELD_SEQUENCE("walls", LEFT_OUT, struct file_scene, walls, &wall, 1, MOST_SHAPES),
+  CYAML_FIELD_SEQUENCE("bodies", LEFT_OUT, struct file_scene, bodies, &body, 1, MOST_BODIES),
+  CYAML_FIELD_SEQUENCE("emitters", LEFT_OUT, struct file_scene, emitters, &emitter, 1,
+                       MOST_EMITTERS),
   CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t schema = {

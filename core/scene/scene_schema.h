@@ -22,13 +22,27 @@ struct file_rotation {
   double *centre, omega; /* rad/s, anticlockwise in the plane of the first two axes */
   unsigned centre_count;
 };
-struct file_shape {
+/* Of walls and bodies: prescribed, or at the start. spin: one number in 2-D, three in 3-D [rad/s]
+ */
+struct file_motion {
+  double *velocity, *spin, *centre, *period;
+  unsigned velocity_count, spin_count, centre_count;
+};
+struct file_shape { /* of fluid and of bodies */
   struct file_box *box;
   struct file_ball *disc, *ball;
   struct file_polygon *polygon;
   double *velocity;
   unsigned velocity_count;
   struct file_rotation *rotation;
+  double *rho0, *viscosity;   /* of a fluid of its own */
+  double *density;            /* of a free body */
+  struct file_motion *motion; /* of a body */
+};
+struct file_emitter {
+  double *centre, *direction, width, *depth, speed, *begin, *end, *rho0, *viscosity;
+  unsigned centre_count, direction_count;
+  bool *round;
 };
 struct file_wall_box {
   double *low, *high;
@@ -38,6 +52,7 @@ struct file_wall_box {
 };
 struct file_wall {
   struct file_wall_box *box;
+  struct file_motion *motion;
 };
 struct file_domain {
   double *low, *high, *period;
@@ -59,6 +74,10 @@ struct file_scene {
   unsigned fluid_count;
   struct file_wall *walls;
   unsigned walls_count;
+  struct file_shape *bodies;
+  unsigned bodies_count;
+  struct file_emitter *emitters;
+  unsigned emitters_count;
 };
 
 struct cyaml_schema_value;

@@ -6,7 +6,7 @@ import cli_case
 from cli_case import Case
 
 ALWAYS = {"x", "v", "id"}
-SECOND_SET = {"VI", "fluid", "source", "diag", "pI", "r", "d", "q"}
+SECOND_SET = {"VI", "wet", "source", "diag", "pI", "r", "d", "q"}
 DUAL = ALWAYS | SECOND_SET | {"m", "rho", "V", "p"}
 # The fields of a solver in a scene without walls, gravity and viscosity; a solver that is not here
 # is held to the rules alone.

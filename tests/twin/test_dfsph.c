@@ -21,9 +21,9 @@ static void twin_factors(const struct cloud *c)
       for (int d = 0; d < DIM; d++) {
         const double g = c->mass * twin_grad(c, i, j, d);
         own[d] += g;
-        if (j < c->n) below += g * g;
+        below += c->light[j] * g * g;
       }
-    for (int d = 0; d < DIM; d++) below += own[d] * own[d];
+    for (int d = 0; d < DIM; d++) below += c->light[i] * own[d] * own[d];
     alpha[i] = c->rho[i] / below;
   }
 }
@@ -36,7 +36,8 @@ static void twin_push(struct cloud *c, const double *k)
     for (int d = 0; d < DIM; d++) {
       change[i][d] = 0;
       for (int j = 0; j < c->n_all; j++)
-        change[i][d] -= c->dt * c->mass * (k[i] / c->rho[i] + (j < c->n ? k[j] / c->rho[j] : 0)) *
+        change[i][d] -= c->light[i] * c->dt * c->mass *
+                        (k[i] / c->rho[i] + (j < c->n ? k[j] / c->rho[j] : 0)) *
                         twin_grad(c, i, j, d);
     }
   for (int i = 0; i < c->n; i++)
@@ -113,6 +114,8 @@ static void twin_start(struct cloud *c)
 
 enum { SIDE = DIM == 3 ? 6 : 13 };
 
+static int mixed; /* two fluids in the next comparison */
+
 static void compare(int walls, int kernel, double xsph, int steps, struct choices o)
 {
   static struct cloud run, twin;
@@ -122,6 +125,7 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
   };
   cloud_make(&run, SIDE, walls, kernel, 11 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
+  if (mixed) cloud_mix(&run);
   twin = run;
   cloud_run(&run, &solver_dfsph, settings, steps);
   twin_start(&twin);
@@ -149,6 +153,14 @@ static void test_warm_start(void **unused)
   (void)unused;
   compare(1, KERNEL_SPIKY, 0, 3, (struct choices){2, CLAMPED, 1, 0.375});
   compare(0, KERNEL_CUBIC, 0, 3, (struct choices){2, FREE, 1, 0.375});
+}
+static void test_two_fluids(void **unused)
+{
+  (void)unused;
+  mixed = 1;
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, 1, 0.375});
+  compare(1, KERNEL_WENDLAND2, 0, 2, (struct choices){3, FREE, 1, 0.25});
+  mixed = 0;
 }
 static void test_clamp_of_each_iteration(void **unused)
 {
@@ -255,6 +267,7 @@ int main(void)
     cmocka_unit_test(test_walls),
     cmocka_unit_test(test_unclamped),
     cmocka_unit_test(test_warm_start),
+    cmocka_unit_test(test_two_fluids),
     cmocka_unit_test(test_clamp_of_each_iteration),
     cmocka_unit_test(test_viscosity),
     cmocka_unit_test(test_projection),

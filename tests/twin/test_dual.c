@@ -1,43 +1,8 @@
 /* The dual-particle strategies against their formulas by double loops (Liu et al. 2024), with the
  * matrix written out. */
-#include "twin_solvers.h"
+#include "twin_dual.h"
 
 enum { SA, SB, SC };
-enum { MOST_VIRTUAL = 3000 };
-
-struct choices {
-  int strategy, saturated, adjoint, real_density,
-    iterations; /* iterations of CG; 0: solve by elimination */
-  double kappa;
-};
-
-/* Virtual particles and the linear system on them. */
-static struct {
-  int n;
-  double X[MOST_VIRTUAL][DIM], V[MOST_VIRTUAL], D[MOST_VIRTUAL], p[MOST_VIRTUAL];
-  double lift[MOST_VIRTUAL][DIM];
-  int fluid[MOST_VIRTUAL];
-} s;
-static double (*A)[MOST_VIRTUAL];
-
-static double between(const double *a, const double *b)
-{
-  double r2 = 0;
-  for (int d = 0; d < DIM; d++) r2 += (a[d] - b[d]) * (a[d] - b[d]);
-  return sqrt(r2);
-}
-static double W_at(const struct cloud *c, double r)
-{
-  return (double)kernel_W(&c->kernel, (real)r, DIM);
-}
-static double dW_at(const struct cloud *c, double r)
-{
-  return (double)kernel_dW(&c->kernel, (real)r, DIM);
-}
-static double volume(const struct cloud *c, int j)
-{
-  return j < c->n ? c->mass / c->rho[j] : c->mass / c->rho0;
-}
 
 /* S.B: five PBF iterations on copies of the fluid */
 static void even_out(const struct cloud *c)
@@ -116,44 +81,10 @@ static void generate(const struct cloud *c, const struct choices *o)
   if (o->strategy == SB) even_out(c);
 }
 
-/* Eqs. (7), (8), (11), (12), (13) for one virtual particle */
-static void source(const struct cloud *c, const struct choices *o, int I)
-{
-  double cI = 0, cf = 0, V2 = 0, rho = 0, vbar[DIM] = {0}, div = 0, grad[DIM] = {0};
-  for (int j = 0; j < c->n_all; j++) {
-    const double w = W_at(c, between(s.X[I], c->x[j])), V = volume(c, j);
-    cI += V * w;
-    V2 += V * V * w;
-    rho += c->mass * w;
-    if (j >= c->n) continue;
-    cf += V * w;
-    for (int d = 0; d < DIM; d++) vbar[d] += V * c->v[j][d] * w;
-  }
-  s.fluid[I] = cf > 0.001 * cI;
-  for (int j = 0; j < c->n_all && s.fluid[I]; j++) {
-    const double r = between(s.X[I], c->x[j]);
-    for (int d = 0; d < DIM && r > 0; d++) {
-      const double Vg = volume(c, j) * dW_at(c, r) * (s.X[I][d] - c->x[j][d]) / r;
-      div += Vg * (c->v[j][d] - vbar[d] / cf);
-      grad[d] += Vg;
-    }
-  }
-  double dense = fmax(rho / c->rho0 - 1, 0);
-  if (o->strategy == SB) dense = I < c->n ? fmax(c->rho[I] / c->rho0 - 1, 0) : 0;
-  if (o->strategy == SC && o->real_density) {
-    dense = 0;
-    for (int j = 0; j < c->n && s.fluid[I]; j++)
-      dense += volume(c, j) * (c->rho[j] / c->rho0 - 1) * W_at(c, between(s.X[I], c->x[j])) / cf;
-    dense = fmax(dense, 0);
-  }
-  s.V[I] = o->saturated ? c->mass / c->rho0 * fmin(1, cI / 0.85) : V2;
-  s.D[I] = s.fluid[I] ? -div / c->dt + o->kappa * dense / (c->dt * c->dt) : 0;
-  for (int d = 0; d < DIM; d++) s.lift[I][d] = s.fluid[I] ? grad[d] / cf : 0;
-}
-
 /* Eq. (15), full lattice */
-static double alpha_zero(const struct cloud *c)
+static double alpha_zero(const struct cloud *c, const struct choices *o)
 {
+  (void)o;
   double total = 0;
   for (int a = -4; a <= 4; a++)
     for (int b = -4; b <= 4; b++)
@@ -164,121 +95,15 @@ static double alpha_zero(const struct cloud *c)
   return 2 / c->rho0 * c->mass / c->rho0 * total;
 }
 
-/* Eqs. (14), (15) with solid particles removed */
-static void matrix(const struct cloud *c)
-{
-  const double alpha0 = alpha_zero(c);
-  for (int I = 0; I < s.n; I++) {
-    double full = 0, to_solid = 0;
-    for (int J = 0; J < s.n; J++) {
-      const double r = between(s.X[I], s.X[J]);
-      const double a = r > 0 ? -2 / c->rho0 * s.V[J] * dW_at(c, r) / r : 0;
-      A[I][J] = s.fluid[I] && s.fluid[J] ? -a : 0;
-      full += a;
-      if (!s.fluid[J]) to_solid += a;
-    }
-    A[I][I] = s.fluid[I] ? fmax(fmax(full, alpha0) - to_solid, 1e-6 * alpha0) : 1;
-  }
-}
-
-/* Jacobi-preconditioned CG in <a, b> = sum V a b, so many iterations from 0 */
-static void conjugate_gradients(int iterations)
-{
-  static double r[MOST_VIRTUAL], d[MOST_VIRTUAL], q[MOST_VIRTUAL];
-  double rz = 0;
-  for (int I = 0; I < s.n; I++) {
-    s.p[I] = 0;
-    r[I] = s.D[I];
-    d[I] = r[I] / A[I][I];
-    rz += s.V[I] * r[I] * d[I];
-  }
-  for (int k = 0; k < iterations; k++) {
-    double dq = 0, rz_new = 0;
-    for (int I = 0; I < s.n; I++) {
-      q[I] = 0;
-      for (int J = 0; J < s.n; J++) q[I] += A[I][J] * d[J];
-      dq += s.V[I] * d[I] * q[I];
-    }
-    for (int I = 0; I < s.n; I++) {
-      s.p[I] += rz / dq * d[I];
-      r[I] -= rz / dq * q[I];
-      rz_new += s.V[I] * r[I] * r[I] / A[I][I];
-    }
-    for (int I = 0; I < s.n; I++) d[I] = r[I] / A[I][I] + rz_new / rz * d[I];
-    rz = rz_new;
-  }
-}
-
-/* Gauss without pivoting: the matrix is diagonally dominant. */
-static void eliminate(void)
-{
-  for (int k = 0; k < s.n; k++)
-    for (int I = k + 1; I < s.n; I++) {
-      const double f = A[I][k] / A[k][k];
-      if (f == 0) continue;
-      for (int J = k; J < s.n; J++) A[I][J] -= f * A[k][J];
-      s.D[I] -= f * s.D[k];
-    }
-  for (int I = s.n - 1; I >= 0; I--) {
-    double rest = s.D[I];
-    for (int J = I + 1; J < s.n; J++) rest -= A[I][J] * s.p[J];
-    s.p[I] = rest / A[I][I];
-  }
-}
-
-/* Eqs. (16), (17), (18) */
-static void correct(struct cloud *c, const struct choices *o)
-{
-  static double dv[TWIN_MOST][DIM];
-  for (int i = 0; i < c->n; i++) {
-    double G[DIM] = {0}, weight = 0, p = 0;
-    for (int J = 0; J < s.n; J++) {
-      const double r = between(c->x[i], s.X[J]), V = s.fluid[J] ? s.V[J] : 0, w = W_at(c, r);
-      weight += V * w;
-      p += V * w * s.p[J];
-      for (int d = 0; d < DIM; d++) {
-        if (r > 0) G[d] += V * s.p[J] * dW_at(c, r) * (c->x[i][d] - s.X[J][d]) / r;
-        if (o->adjoint) G[d] += V * s.p[J] * w * s.lift[J][d];
-      }
-    }
-    for (int d = 0; d < DIM; d++) c->v[i][d] -= c->dt / (o->adjoint ? c->rho[i] : c->rho0) * G[d];
-    c->p[i] = weight > 0 ? p / weight : 0;
-  }
-  for (int i = 0; i < c->n; i++) {
-    for (int d = 0; d < DIM; d++) dv[i][d] = 0;
-    for (int j = c->n; j < c->n_all; j++) {
-      double approach = 0;
-      for (int d = 0; d < DIM; d++) approach += (c->v[i][d] - c->v[j][d]) * c->normal[j][d];
-      for (int d = 0; d < DIM; d++)
-        dv[i][d] -= c->mass / c->rho0 * twin_W(c, i, j) * fmin(approach, 0) * c->normal[j][d];
-    }
-  }
-  for (int i = 0; i < c->n; i++)
-    for (int d = 0; d < DIM; d++) c->v[i][d] += dv[i][d];
-}
-
-/* Algorithm 1 */
-static void twin_step(struct cloud *c, const struct choices *o)
-{
-  for (int i = 0; i < c->n; i++)
-    for (int d = 0; d < DIM; d++) {
-      c->x[i][d] += c->dt * c->v[i][d];
-      c->v[i][d] += c->dt * c->gravity[d];
-    }
-  twin_density(c);
-  if (c->xsph > 0) twin_viscosity(c, NULL);
-  generate(c, o);
-  for (int I = 0; I < s.n; I++) source(c, o, I);
-  matrix(c);
-  if (o->iterations)
-    conjugate_gradients(o->iterations);
-  else
-    eliminate();
-  correct(c, o);
-}
-
 static const struct solver *const strategies[] = {&solver_dual_sa, &solver_dual_sb,
                                                   &solver_dual_sc};
+
+static int density_of(int strategy, int at_real)
+{
+  return strategy == SB              ? DENSITY_COPIED
+         : strategy == SC && at_real ? DENSITY_REAL
+                                     : DENSITY_VIRTUAL;
+}
 
 static void compare(const struct choices *o, int walls, unsigned long long seed)
 {
@@ -286,13 +111,14 @@ static void compare(const struct choices *o, int walls, unsigned long long seed)
   cloud_make(&a, DIM == 2 ? 11 : 6, walls, KERNEL_CUBIC, seed);
   a.xsph = (double)(real)0.05;
   b = a;
-  const struct setting settings[] = {{"volume", o->saturated},
-                                     {"gradient", o->adjoint},
-                                     {"kappa", o->kappa},
-                                     {"tolerance", 1e-14},
-                                     {"fixed_iterations", o->iterations},
-                                     {o->strategy == SC ? "density" : NULL, o->real_density},
-                                     {NULL, 0}};
+  const struct setting settings[] = {
+    {"volume", o->saturated},
+    {"gradient", o->adjoint},
+    {"kappa", o->kappa},
+    {"tolerance", 1e-14},
+    {"fixed_iterations", o->iterations},
+    {o->strategy == SC ? "density" : NULL, o->density == DENSITY_REAL},
+    {NULL, 0}};
   cloud_run(&a, strategies[o->strategy], settings, 1);
   twin_step(&b, o);
   assert_same_cloud(&a, &b, o->iterations ? 1 : 2);
@@ -305,7 +131,8 @@ static void one_step(void **unused)
   for (int strategy = SA; strategy <= SC; strategy++)
     for (int form = 0; form < 4; form++)
       for (int walls = 0; walls < 2; walls++) {
-        const struct choices o = {strategy, form & 1, form >> 1, form & 1, 4, (double)(real)0.1};
+        const struct choices o = {
+          strategy, form & 1, form >> 1, density_of(strategy, form & 1), 4, 1, (double)(real)0.1};
         print_message("%s, form %d, %s\n", strategies[strategy]->name, form,
                       walls ? "walls" : "free");
         compare(&o, walls, 11 + (unsigned long long)form);
@@ -319,7 +146,7 @@ static void converged_step(void **unused)
 {
   (void)unused;
   for (int strategy = SA; strategy <= SC; strategy++) {
-    const struct choices o = {strategy, 1, 0, strategy != SA, 0, 0.1};
+    const struct choices o = {strategy, 1, 0, density_of(strategy, 1), 0, 1, 0.1};
     compare(&o, 1, 5);
   }
 }

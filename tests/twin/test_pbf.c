@@ -27,9 +27,9 @@ static double twin_lambda(struct cloud *c, const struct choices *o, int i)
       own[d] += g;
       other += g * g;
     }
-    if (j < c->n) gradients += other;
+    gradients += c->light[j] * other;
   }
-  for (int d = 0; d < DIM; d++) gradients += own[d] * own[d];
+  for (int d = 0; d < DIM; d++) gradients += c->light[i] * own[d] * own[d];
   c->rho[i] = rho;
   const double lambda = -(rho / c->rho0 - 1) / (gradients + o->epsilon / (c->dx * c->dx));
   return lambda > 0 && !o->free_ ? 0 : lambda;
@@ -45,7 +45,8 @@ static void twin_shift(const struct cloud *c, const struct choices *o, const dou
     if (!near[i][j]) continue;
     const double scorr = -o->scorr_k * c->dx * c->dx * pow(twin_W(c, i, j) / W_dq, o->scorr_n);
     const double strength = lambda[i] + (j < c->n ? lambda[j] : 0) + scorr;
-    for (int d = 0; d < DIM; d++) shift[d] += c->mass / c->rho0 * strength * twin_grad(c, i, j, d);
+    for (int d = 0; d < DIM; d++)
+      shift[d] += c->light[i] * c->mass / c->rho0 * strength * twin_grad(c, i, j, d);
   }
 }
 
@@ -75,6 +76,8 @@ static void twin_step(struct cloud *c, const struct choices *o)
   if (c->xsph > 0) twin_viscosity(c, near);
 }
 
+static int mixed; /* two fluids in the next comparison */
+
 static void compare(int side, int walls, int kernel, double xsph, int steps, struct choices o)
 {
   static struct cloud run, twin;
@@ -89,6 +92,7 @@ static void compare(int side, int walls, int kernel, double xsph, int steps, str
   };
   cloud_make(&run, side, walls, kernel, 7 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
+  if (mixed) cloud_mix(&run);
   twin = run;
   cloud_run(&run, &solver_pbf, settings, steps);
   for (int k = 0; k < steps; k++) twin_step(&twin, &o);
@@ -106,6 +110,13 @@ static void test_walls(void **unused)
 {
   (void)unused;
   compare(SIDE, 1, KERNEL_WENDLAND2, 0, 1, (struct choices){3, 0, 4, 0.5, 0, 0.25});
+}
+static void test_two_fluids(void **unused)
+{
+  (void)unused;
+  mixed = 1;
+  compare(SIDE, 1, KERNEL_CUBIC, 0, 1, (struct choices){3, 0, 4, 0.5, 0, 0.25});
+  mixed = 0;
 }
 static void test_adsorption(void **unused)
 {
@@ -158,13 +169,10 @@ static void test_alone(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_free_fluid),
-    cmocka_unit_test(test_walls),
-    cmocka_unit_test(test_adsorption),
-    cmocka_unit_test(test_artificial_pressure),
-    cmocka_unit_test(test_two_steps_with_viscosity),
-    cmocka_unit_test(test_tolerance),
-    cmocka_unit_test(test_alone),
+    cmocka_unit_test(test_free_fluid),          cmocka_unit_test(test_walls),
+    cmocka_unit_test(test_two_fluids),          cmocka_unit_test(test_adsorption),
+    cmocka_unit_test(test_artificial_pressure), cmocka_unit_test(test_two_steps_with_viscosity),
+    cmocka_unit_test(test_tolerance),           cmocka_unit_test(test_alone),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

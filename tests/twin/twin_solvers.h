@@ -28,6 +28,8 @@ enum { TWIN_MOST = 600 };
 struct cloud {
   int n, n_all;
   double x[TWIN_MOST][DIM], v[TWIN_MOST][DIM], normal[TWIN_MOST][DIM], rho[TWIN_MOST], p[TWIN_MOST];
+  double light[TWIN_MOST]; /* rho0/rho0_i of the fluid, 0 for walls */
+  int several;             /* fluids: those of even label are half as heavy */
   double dx, dt, rho0, mass, xsph, gravity[DIM];
   struct kernel kernel;
 };
@@ -70,6 +72,7 @@ static inline void cloud_make(struct cloud *c, int side, int walls, int kernel,
   c->n = total - n_wall;
   for (int k = 0; k < total; k++) {
     const int i = k < n_wall ? c->n + k : k - n_wall;
+    c->light[i] = i < c->n;
     for (int d = 0, rest = k; d < DIM; d++, rest /= side) {
       const double at = rest % side + 0.25 * (2 * twin_random(&seed) - 1);
       c->x[i][d] = (double)(real)(0.92 * c->dx * at);
@@ -78,6 +81,13 @@ static inline void cloud_make(struct cloud *c, int side, int walls, int kernel,
     if (k < n_wall)
       for (int d = 0; d < DIM; d++) c->v[i][d] = d == 0 ? 0.5 : 0, c->normal[i][d] = d == DIM - 1;
   }
+}
+
+/* Two fluids in a motley crowd: the one of even labels has half of the rest density. */
+static inline void cloud_mix(struct cloud *c)
+{
+  c->several = 1;
+  for (int i = 0; i < c->n; i += 2) c->light[i] = 2;
 }
 
 static inline double twin_distance(const struct cloud *c, int i, int j)
@@ -163,6 +173,12 @@ static inline struct scene cloud_scene(const struct cloud *c)
   s.common.spacing = c->dx, s.common.dt = c->dt, s.common.t_end = 1;
   s.common.support = (double)c->kernel.R / c->dx, s.common.kernel = c->kernel.kind;
   s.common.rho0 = c->rho0, s.common.xsph = c->xsph, s.common.samples = 1;
+  if (c->several) {
+    int number;
+    assert_int_equal(scene_find_fluid(&s, c->rho0 / 2, 0, &number), OK);
+    assert_int_equal(scene_set_fluid(&s, 0, number), OK);
+    for (int i = 1; i < c->n; i += 2) s.fluid_of[i] = 0;
+  }
   return s;
 }
 

@@ -1,0 +1,237 @@
+/* `sphbench compare` and `sphbench bless`: results against a baseline, and a new baseline. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "arguments.h"
+#include "baseline.h"
+#include "front.h"
+
+enum { MOST_LINES = 20 }; /* of the table that people read */
+
+struct request {
+  const char *names[2]; /* results, baseline */
+  int num_names;
+  const char *junit, *json, *reason;
+};
+
+static status parse(struct request *r, const char *verb, int argc, char **argv)
+{
+  const int is_bless = strcmp(verb, "bless") == 0;
+  const struct flag flags[] = {
+    {"--junit", &r->junit, NULL}, {"--json", &r->json, NULL}, {"--reason", &r->reason, NULL}};
+  const struct arguments what = {
+    verb, is_bless ? flags + 2 : flags, is_bless ? 1 : 2, r->names, 2, &r->num_names};
+  *r = (struct request){.num_names = 0};
+  TRY(arguments_parse(&what, argc, argv));
+  if (r->num_names == 2) return OK;
+  return user_error("%s: RESULTS and BASELINE.json are needed, %d name%s found", verb, r->num_names,
+                    r->num_names == 1 ? "" : "s");
+}
+
+/* --- what people read */
+
+static void print_row(const struct comparison *row)
+{
+  printf("%-4s  %-22s %13.6g %13.6g %10.2g  %s%s%s\n", row->pass ? "ok" : "FAIL", row->name,
+         row->value, row->baseline, row->tolerance, row->run, *row->note ? ": " : "", row->note);
+}
+
+/* Worst first; what passes is told only as far as there is room. */
+static void print_table(const struct comparisons *all)
+{
+  printf("%-4s  %-22s %13s %13s %10s  %s\n", "", "metric", "value", "baseline", "gate", "run");
+  for (int k = 0; k < all->n && (k < MOST_LINES || !all->row[k].pass); k++) print_row(&all->row[k]);
+  if (all->n > MOST_LINES && all->row[MOST_LINES].pass)
+    printf("... and %d more that pass\n", all->n - MOST_LINES);
+  printf(
+    "%d values and curves of %d runs compared, %d failed; the gate is the smallest change that "
+    "would have failed\n",
+    all->n, all->runs, all->failed);
+  if (all->extra)
+    printf("warning: %d runs or metrics are not in the baseline (bless adds them)\n", all->extra);
+}
+
+/* --- what machines read */
+
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static json_t *rows_json(const struct comparisons *all)
+{
+  json_t *rows = json_array();
+  for (int k = 0; k < all->n; k++) {
+    const struct comparison *row = &all->row[k];
+    json_array_append_new(
+      rows, json_pack("{s:s, s:s, s:o, s:o, s:o, s:b, s:s}", "run", row->run, "name", row->name,
+                      "value", number(row->value), "baseline", number(row->baseline), "tolerance",
+                      number(row->tolerance), "pass", row->pass, "note", row->note));
+  }
+  return rows;
+}
+
+static status write_text(const char *path, const char *text)
+{
+  struct new_file file;
+  if (!text) return status_set(ERR_MEMORY, "out of memory");
+  if (strcmp(path, "-") == 0) return fputs(text, stdout) < 0 ? ERR_IO : OK;
+  TRY(file_begin(&file, path));
+  fputs(text, file.stream);
+  return file_commit(&file);
+}
+
+static status write_json(const char *path, json_t *object)
+{
+  char *text = json_dumps(object, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
+  char *line = text ? text_make("%s\n", text) : NULL;
+  const status result = write_text(path, line);
+  free(text);
+  free(line);
+  json_decref(object);
+  return result;
+}
+
+static void put_xml(FILE *out, const char *text)
+{
+  for (; *text; text++) switch (*text) {
+    case '<': fputs("&lt;", out); break;
+    case '>': fputs("&gt;", out); break;
+    case '&': fputs("&amp;", out); break;
+    case '"': fputs("&quot;", out); break;
+    default: fputc((unsigned char)*text < 32 ? ' ' : *text, out);
+    }
+}
+
+/* A metric is a test case of the class that is its run. */
+static status write_junit(const char *path, const struct comparisons *all)
+{
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return status_set(ERR_MEMORY, "out of memory");
+  fprintf(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+  fprintf(out, "<testsuite name=\"sphbench\" tests=\"%d\" failures=\"%d\">\n", all->n, all->failed);
+  for (int k = 0; k < all->n; k++) {
+    const struct comparison *row = &all->row[k];
+    fprintf(out, " <testcase classname=\"");
+    put_xml(out, row->run);
+    fprintf(out, "\" name=\"");
+    put_xml(out, row->name);
+    if (row->pass) {
+      fprintf(out, "\"/>\n");
+      continue;
+    }
+    fprintf(out, "\"><failure message=\"%.9g, baseline %.9g, tolerance %.3g ", row->value,
+            row->baseline, row->tolerance);
+    put_xml(out, row->note);
+    fprintf(out, "\"/></testcase>\n");
+  }
+  fprintf(out, "</testsuite>\n");
+  fclose(out);
+  const status result = write_text(path, text);
+  free(text);
+  return result;
+}
+
+/* --- compare */
+
+static status report(const struct request *r, const struct comparisons *all)
+{
+  const int to_stdout = (r->json && !strcmp(r->json, "-")) || (r->junit && !strcmp(r->junit, "-"));
+  if (!to_stdout) print_table(all);
+  if (r->json)
+    TRY(write_json(r->json,
+                   json_pack("{s:i, s:i, s:i, s:o}", "compared", all->n, "failed", all->failed,
+                             "unknown", all->extra, "metrics", rows_json(all))));
+  if (r->junit) TRY(write_junit(r->junit, all));
+  if (all->runs == 0)
+    return user_error("nothing was compared: no run of '%s' is in '%s'", r->names[0], r->names[1]);
+  if (all->failed == 0) return OK;
+  return status_set(ERR_WORSE, "%d of %d values differ from the baseline, the worst is %s of %s",
+                    all->failed, all->n, all->row[0].name, all->row[0].run);
+}
+
+status verb_compare(int argc, char **argv)
+{
+  struct request r;
+  json_t *runs = NULL, *baseline = NULL;
+  struct comparisons all = {.n = 0};
+  TRY(parse(&r, "compare", argc, argv));
+  status result = baseline_read(r.names[1], &baseline);
+  if (result == OK)
+    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"), &runs);
+  if (result == OK) result = baseline_compare(runs, baseline, &all);
+  if (result == OK) result = report(&r, &all);
+  free(all.row);
+  json_decref(runs);
+  json_decref(baseline);
+  return result;
+}
+
+/* --- bless */
+
+static json_t *empty_baseline(void)
+{
+  return json_pack("{s:s, s:o, s:o, s:{}, s:[]}", "about", "Written by `sphbench bless`", "rules",
+                   baseline_default_rules(), "curves", baseline_default_curves(), "runs",
+                   "history");
+}
+
+static void add_history(json_t *baseline, const char *reason, int changes)
+{
+  char date[32];
+  const time_t now = time(NULL);
+  struct tm utc;
+  strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+  json_array_append_new(
+    json_object_get(baseline, "history"),
+    json_pack("{s:s, s:s, s:i}", "date", date, "reason", reason, "changes", changes));
+}
+
+/* Runs that were not repeated stay as they are. */
+static status bless(const struct request *r, json_t *baseline, const json_t *runs)
+{
+  struct comparisons all;
+  const char *key;
+  json_t *run;
+  int fresh = 0, missing = 0;
+  json_t *known = json_object_get(baseline, "runs");
+  TRY(baseline_compare(runs, baseline, &all));
+  for (int k = 0; k < all.n; k++) missing += strcmp(all.row[k].name, "run") == 0;
+  for (int k = 0; k < all.n && !all.row[k].pass; k++)
+    if (strcmp(all.row[k].name, "run") != 0) print_row(&all.row[k]);
+  json_object_foreach((json_t *)runs, key, run)
+  {
+    if (!json_object_get(known, key)) {
+      printf("new   %s\n", key);
+      fresh++;
+    }
+    json_object_set(known, key, run);
+  }
+  const int changes = all.failed - missing + fresh;
+  printf("%d values changed, %d runs are new, %d were not repeated and stay\n",
+         all.failed - missing, fresh, missing);
+  free(all.row);
+  add_history(baseline, r->reason, changes);
+  return write_json(r->names[1], json_incref(baseline));
+}
+
+status verb_bless(int argc, char **argv)
+{
+  struct request r;
+  json_t *runs = NULL, *baseline = NULL;
+  TRY(parse(&r, "bless", argc, argv));
+  if (!r.reason || strspn(r.reason, " ") == strlen(r.reason))
+    return user_error("bless: --reason TEXT is needed: why may the results change?");
+  status result = OK;
+  if (path_is_file(r.names[1]))
+    result = baseline_read(r.names[1], &baseline);
+  else
+    baseline = empty_baseline();
+  if (result == OK)
+    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"), &runs);
+  if (result == OK) result = bless(&r, baseline, runs);
+  json_decref(runs);
+  json_decref(baseline);
+  return result;
+}
