@@ -207,7 +207,8 @@ const struct solver solver_iisph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(FLUIDS),
+         CAN(PERIODIC) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) |
+         CAN(BODIES) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,
@@ -215,6 +216,7 @@ const struct solver solver_iisph = {
   .state_size = sizeof(state),
   .start = start,
   .step = step,
+  .changed = NULL,
   .project = NULL,
   .max_dt = NULL,
   .uses = uses,

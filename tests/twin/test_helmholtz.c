@@ -9,8 +9,7 @@ struct choices {
   int wall_velocity_own; /* v_b in the divergence, not 2 v_b - v_i */
 };
 
-static double light_[TWIN_MOST], V[TWIN_MOST], A[TWIN_MOST][TWIN_MOST], b[TWIN_MOST],
-  phi[TWIN_MOST];
+static double V[TWIN_MOST], A[TWIN_MOST][TWIN_MOST], b[TWIN_MOST], phi[TWIN_MOST];
 
 /* The symmetric gradient of Sec. 2.1.2 times dt/rho_0, with p_b = p_i and rho_b = rho_0 on walls */
 static void push(struct cloud *c, const double *p)
@@ -21,7 +20,7 @@ static void push(struct cloud *c, const double *p)
     for (int j = 0; j < c->n_all; j++) {
       const double other = j < c->n ? p[j] / (c->rho[j] * c->rho[j]) : p[i] / (c->rho0 * c->rho0);
       for (int d = 0; d < DIM; d++)
-        dv[i][d] -= c->dt * light_[i] * c->mass * (p[i] / (c->rho[i] * c->rho[i]) + other) *
+        dv[i][d] -= c->dt * c->light[i] * c->mass * (p[i] / (c->rho[i] * c->rho[i]) + other) *
                     twin_grad(c, i, j, d);
     }
   for (int i = 0; i < c->n; i++)
@@ -73,8 +72,8 @@ static double composed(const struct cloud *c, const struct choices *o, int i)
   for (int j = 0; j < c->n_all; j++)
     for (int d = 0; d < DIM; d++) {
       const double g = c->rho0 * c->mass * twin_grad(c, i, j, d), rho2 = c->rho[i] * c->rho[i];
-      v[i][d] += light_[i] * g * (1 / rho2 + (j < c->n ? 0 : 1 / (c->rho0 * c->rho0)));
-      if (j < c->n) v[j][d] -= light_[j] * g / rho2;
+      v[i][d] += c->light[i] * g * (1 / rho2 + (j < c->n ? 0 : 1 / (c->rho0 * c->rho0)));
+      if (j < c->n) v[j][d] -= c->light[j] * g / rho2;
     }
   return minus_divergence(c, o, i, v);
 }
@@ -96,13 +95,13 @@ static void set_up(const struct cloud *c, const struct choices *o)
         wall += coefficient(c, o, c->mass / c->rho0, r);
         continue;
       }
-      const double both = 2 * light_[i] * light_[j] / (light_[i] + light_[j]);
+      const double both = 2 * c->light[i] * c->light[j] / (c->light[i] + c->light[j]);
       const double a = coefficient(c, o, c->mass / c->rho[j], r) * both;
       open += a;
       if (!held && !(o->surface == ZERO && c->rho[j] < thin * c->rho0)) A[i][j] -= a;
     }
     const double part = o->surface == PRINTED ? 0 : o->surface == LIFTED ? 1 : thin;
-    const double lifted = fmax(open, light_[i] * (part * full - wall));
+    const double lifted = fmax(open, c->light[i] * (part * full - wall));
     A[i][i] += fmax(lifted, held ? full : composed(c, o, i));
     if (held) b[i] = 0;
     V[i] = c->mass / c->rho[i];
@@ -204,7 +203,6 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
   cloud_make(&run, SIDE, walls, kernel, 11 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
   twin = run;
-  for (int i = 0; i < twin.n; i++) light_[i] = 1;
   cloud_run(&run, &solver_helmholtz, settings, steps);
   for (int k = 0; k < (steps ? steps : 1); k++)
     if (steps > 0) {
@@ -263,35 +261,15 @@ static void test_elimination(void **unused)
 }
 #endif
 
-/* A projection of two fluids of unlike density, mixed at random. The labels' light_i go into the
- * store after a sort that the projection will find in order. */
+/* A projection of two fluids */
 static void compare_mixed(struct cloud *c, struct choices o)
 {
   static struct cloud twin;
-  static real light[TWIN_MOST + 1];
   const struct setting settings[] = {
     {"fixed_iterations", o.iterations}, {"kappa", o.kappa}, {"surface", o.surface}, {NULL, 0}};
-  memset(light, 0, sizeof light);
+  cloud_mix(c);
   twin = *c;
-  for (int i = 0; i < c->n; i++) light_[i] = i % 3 ? 1 : 0.25;
-  struct scene scene = cloud_scene(c);
-  struct run *run;
-  struct snapshot now;
-  double values[64];
-  set_values(&solver_helmholtz, settings, values);
-  assert_int_equal(run_create(&solver_helmholtz, values, &scene, 0, &run), OK);
-  assert_int_equal(run_neighbours(run), OK);
-  for (int k = 0; k < c->n; k++) light[k] = (real)light_[run->view->p.id[k]];
-  run->view->p.light = light;
-  assert_int_equal(run_project(run), OK);
-  assert_int_equal(run_snapshot(run, &now), OK);
-  for (int k = 0; k < now.n; k++) {
-    const int i = now.id[k];
-    for (int d = 0; d < DIM; d++) c->v[i][d] = (double)now.v[k].c[d];
-    c->rho[i] = (double)now.rho[k], c->p[i] = (double)now.p[k];
-  }
-  snapshot_free(&now);
-  run_free(run);
+  cloud_run(c, &solver_helmholtz, settings, 0);
   twin_density(&twin);
   twin_project(&twin, &o);
   assert_same_cloud(c, &twin, 1);
@@ -320,6 +298,7 @@ static void test_spray(void **unused)
     memcpy(c.x[k], all.x[from], sizeof c.x[k]);
     memcpy(c.v[k], all.v[from], sizeof c.v[k]);
     memcpy(c.normal[k], all.normal[from], sizeof c.normal[k]);
+    c.light[k] = all.light[from];
   }
   compare_mixed(&c, (struct choices){PRINTED, 0, 2, 0, (double)(real)0.01, 0});
 }
@@ -337,7 +316,6 @@ static void test_tolerance(void **unused)
     const struct choices o = {ZERO, 0, 2, 0, (double)(real)0.01, 0};
     cloud_make(&c, SIDE, 1, KERNEL_CUBIC, 13);
     twin = c;
-    for (int i = 0; i < c.n; i++) light_[i] = 1;
     cloud_run(&c, &solver_helmholtz, settings, 0);
     twin_density(&twin);
     set_up(&twin, &o);
