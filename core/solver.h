@@ -52,6 +52,7 @@ struct run; /* owns particles, pair lists, clocks, results; opaque to solvers */
   real dx;          /* particle spacing [m] */                                            \
   real mass;        /* of a particle in a full lattice of density rho0 [kg, 2-D: kg/m] */ \
   real xsph;        /* XSPH coefficient per step [1] */                                   \
+  real sigma;       /* surface tension [N/m] */                                           \
   vec gravity       /* body force [m/s^2] */
 struct view {
   VIEW;

@@ -171,6 +171,7 @@ static void fill_view(struct run *run)
   v->dx = (real)c->spacing;
   v->mass = (real)lattice_mass(c->rho0, c->spacing, &kernel);
   v->xsph = (real)c->xsph;
+  v->sigma = (real)c->tension;
   v->gravity = run->scene.gravity;
 }
 

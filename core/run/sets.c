@@ -248,7 +248,8 @@ static void apply_xsph(struct run *run)
 {
   const struct scene_params *c = &run->scene.common;
   const double h = (double)run->view->nb.kernel.R / 2;
-  run->view->xsph = (real)(c->xsph + c->xsph_rate * run->dt / h);
+  const double part = (double)run->view->dt / (double)(real)run->dt; /* of a substep, else 1 */
+  run->view->xsph = (real)(part * (c->xsph + c->xsph_rate * run->dt / h));
   physics_viscosity(run->view);
 }
 
