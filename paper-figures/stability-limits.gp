@@ -17,7 +17,7 @@ do for [e = -3:4] { set xtics add (2.*10**e, 5.*10**e) }
 why(text) = text eq '' ? '' : '  '.text
 plot 'limits.dat' using (1e3*$2):1:5 with points pointtype 7 pointsize 1.6 linecolor variable \
     title 'largest stable', \
-  '' using (1e3*$2):1:(why(strcol(7))) with labels left offset 0.7,0 font ',11' textcolor '#555555' \
-    notitle, \
+  '' using (1e3*$2):1:(why(strcol(7))) with labels left offset 0.7,0 \
+    font ',11' textcolor '#555555' notitle, \
   '' using (1e3*$4):1 with points pointtype 124 pointsize 1.6 linewidth 3 linecolor rgb '#000000' \
     title 'predicted'

@@ -32,7 +32,8 @@ do for [k = 1:n] {
   set title name[k] noenhanced offset 0,-0.6
   if (k > n - columns) { set xlabel 'time step [ms]' offset 0,0.5 } else { unset xlabel }
   if (k % columns == 1 || columns == 1) { set ylabel label_value noenhanced } else { unset ylabel }
-  plot cells[k] using (1e3*$1):2:(1e3*$3):(1e3*$4):5:6:7 with boxxyerror linecolor rgb variable notitle, \
+  plot cells[k] using (1e3*$1):2:(1e3*$3):(1e3*$4):5:6:7 with boxxyerror \
+    linecolor rgb variable notitle, \
     line[k] using (1e3*$1):2 with lines linewidth 2.5 dashtype solid linecolor rgb '#000000' notitle
   unset for [j = 1000:1100] label j
   unset arrow 1100

@@ -256,8 +256,8 @@ const struct solver solver_dfsph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) |
-         CAN(MOVING_WALLS) | CAN(BODIES) | CAN(EMITTERS),
+         CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(VISCOSITY) |
+         CAN(TENSION) | CAN(FLUIDS) | CAN(MOVING_WALLS) | CAN(BODIES) | CAN(EMITTERS),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

@@ -277,5 +277,5 @@ static int uses(const void *self, const char *field)
 #define NEEDS (HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p) | HAS(normal))
 #define DOES                                                                                      \
   (CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT) | \
-   CAN(MOVING_WALLS) | CAN(EMITTERS))
+   CAN(VISCOSITY) | CAN(TENSION) | CAN(MOVING_WALLS) | CAN(EMITTERS))
 #endif

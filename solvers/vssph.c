@@ -359,8 +359,8 @@ const struct solver solver_vssph = {
   .doi = "10.48550/arXiv.2001.09421",
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p) | HAS(normal),
-  .can =
-    CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) | CAN(PROJECT),
+  .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
+         CAN(PROJECT) | CAN(ISOTROPIC) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

@@ -21,7 +21,7 @@ static const char usage[] =
   "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--fresh] [--dry-run] [--quiet]\n"
-  "  stability SCENE           largest stable time step of each solver, and why a longer one fails\n"
+  "  stability SCENE           largest stable time step of each solver; why a longer one fails\n"
   "         [--map KEY=V,V,...] [--seeds N] [--ignore CRITERION,...] [--quick] [--json FILE]\n"
   "         --extreme [--solvers A,B]   the catalogue of extreme cases\n"
   "  compare RESULTS BASELINE.json [--junit FILE] [--json FILE]   exit code 1: something got worse\n"

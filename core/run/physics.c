@@ -29,14 +29,17 @@ STAGE void volume(const struct view *s, int i) { s->p.V[i] = s->p.m[i] / s->p.rh
 
 /* XSPH, Monaghan 1989, J. Comput. Phys. 82, Eq. (2.6), as a coefficient per step (Schechter &
  * Bridson 2012): dv_i = c sum_j V_ij (v_j - v_i) W_ij,   V_ij = 2 V_i V_j / (V_i + V_j) = 2 m /
- * (rho_i + rho_j): symmetric, so momentum is kept; 0 on walls, so that they are free slip. */
+ * (rho_i + rho_j): symmetric, so momentum is kept; 0 on walls, so that they are free slip. Between
+ * fluids times 2 light_i/(light_i + light_j), for the same reason. */
 STAGE void xsph(const struct view *s, int i)
 {
   vecs dv = NO_VECS;
   const real Vi = s->p.V[i];
   for_neighbours (s, i, ij) {
     const lanes Vj = of(s->p.V, ij);
-    dv = add(dv, scale(-2 * Vi * Vj / (Vi + Vj) * W(&s->nb, ij), diff(s->p.v, ij)));
+    lanes share = 2 * Vi * Vj / (Vi + Vj) * W(&s->nb, ij);
+    if (s->p.light) share = share * 2 * light(&s->p, i) / (light(&s->p, i) + light_of(&s->p, ij));
+    dv = add(dv, scale(-share, diff(s->p.v, ij)));
   }
   s->p.dv[i] = times(s->xsph, sum(dv));
 }

@@ -15,12 +15,16 @@ unsigned scene_asks(const struct scene *scene)
 {
   unsigned asks = DIM == 2 ? CAN(2D) : CAN(3D);
   if (scene->n_wall > 0) asks |= CAN(WALLS);
-  if (scene->common.xsph > 0) asks |= CAN(XSPH);
+  if (scene->common.xsph > 0 || scene->common.xsph_rate > 0) asks |= CAN(XSPH);
+  if (scene->common.viscosity > 0) asks |= CAN(VISCOSITY);
+  if (scene->common.tension > 0) asks |= CAN(TENSION);
   if (scene->num_bodies > 0) asks |= CAN(MOVING_WALLS);
   for (int k = 0; k < scene->num_bodies; k++)
     if (scene->body[k].density > 0) asks |= CAN(BODIES);
-  for (int k = 0; k < scene->num_fluids; k++)
+  for (int k = 0; k < scene->num_fluids; k++) {
     if (scene->fluid[k].rho0 != scene->common.rho0) asks |= CAN(FLUIDS);
+    if (scene->fluid[k].viscosity > 0) asks |= CAN(VISCOSITY);
+  }
   if (scene->num_emitters > 0) asks |= CAN(EMITTERS);
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
@@ -42,10 +46,16 @@ const char *solver_lacks(const struct solver *solver, unsigned asks)
   return NULL;
 }
 
-static unsigned fields_needed(const struct solver *solver, unsigned asks)
+static unsigned fields_needed(const struct solver *solver, unsigned asks, const struct scene *scene)
 {
+  const struct scene_params *c = &scene->common;
   unsigned needs = solver->needs | HAS(x) | HAS(v) | HAS(id);
-  if (asks & CAN(XSPH)) needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
+  if (asks & (CAN(XSPH) | CAN(VISCOSITY) | CAN(TENSION)))
+    needs |= HAS(rho) | HAS(m) | HAS(V) | HAS(dv);
+  if (asks & CAN(VISCOSITY) && c->viscosity_form == VISCOSITY_IMPLICIT)
+    needs |= HAS(mu_dir) | HAS(mu_op) | HAS(mu_diag);
+  if (asks & CAN(VISCOSITY) && scene->num_fluids > 0) needs |= HAS(mu);
+  if (asks & CAN(TENSION)) needs |= HAS(slant) | (c->tension_form == TENSION_HE ? HAS(colour) : 0);
   if (asks & CAN(FLUIDS)) needs |= HAS(light) | HAS(fluid);
   if (asks & CAN(MOVING_WALLS)) needs |= HAS(body) | HAS(arm);
   if (asks & CAN(BODIES)) needs |= HAS(m) | HAS(p) | HAS(rho) | HAS(dv);
@@ -159,7 +169,15 @@ static void fill_view(struct run *run)
   v->dx = (real)c->spacing;
   v->mass = (real)lattice_mass(c->rho0, c->spacing, &kernel);
   v->xsph = (real)c->xsph;
+  v->sigma = (real)c->tension;
   v->gravity = run->scene.gravity;
+}
+
+static struct tension tension_of_scene(const struct run *run)
+{
+  const struct scene_params *c = &run->scene.common;
+  return tension_make((int)c->tension_form, c->tension, &run->view->nb.kernel, c->spacing,
+                      (double)run->view->mass);
 }
 
 /* Fields and the pair list of a full lattice: what any run needs. A system that promises more
@@ -205,7 +223,8 @@ status run_create(const struct solver *solver, const double *solver_values, stru
   run->dt = run->scene.common.dt;
   fill_view(run);
   set_params(solver, solver_values, run->state);
-  run->needs = fields_needed(solver, asks);
+  run->needs = fields_needed(solver, asks, &run->scene);
+  if (asks & CAN(TENSION)) run->tension = tension_of_scene(run);
   TRY(check_memory(run));
   run->speed_limit = SPEED_MARGIN * reference_speed(&run->scene);
   TRY(store_open(&run->store, solver, run->needs, run->scene.n, run->scene.n_wall, run->state));
@@ -307,10 +326,9 @@ void run_free(struct run *run)
   bodies_free(run);
   visits_free(run);
   particle_search.pair_list_free(&run->neighbours);
-  for (int k = 0; k < MAX_PAIR_LISTS; k++) {
-    particle_search.pair_list_free(&run->list[k]);
+  for (int k = 0; k < MAX_PAIR_LISTS; k++) particle_search.pair_list_free(&run->list[k]);
+  for (int k = 0; k <= MAX_PAIR_LISTS; k++)
     memory_give(run->coefficients[k].data, run->coefficients[k].capacity);
-  }
   particle_search.cell_set_free(&run->fluid_cells);
   particle_search.cell_set_free(&run->wall_cells);
   particle_search.cell_set_free(&run->virtual_cells);

@@ -4,6 +4,7 @@
 #include "../benchmark.h"
 #include "../solver.h"
 #include "bodies.h"
+#include "forces.h"
 #include "judge.h"
 #include "store.h"
 #include "visits.h"
@@ -38,7 +39,8 @@ struct run {
   struct {
     real *data;
     size_t capacity;
-  } coefficients[MAX_PAIR_LISTS];
+  } coefficients[MAX_PAIR_LISTS + 1]; /* the last is that of implicit viscosity */
+  struct tension tension;
   struct pair_visits *visits; /* NULL: pairs are not counted */
   int *order;
   int order_capacity;

@@ -221,14 +221,49 @@ status run_density(struct run *run)
   return OK;
 }
 
+/* (I - dt/rho mu lap) v = v* */
+static status solve_viscosity(struct run *run, struct viscosity viscosity)
+{
+  const int most = 10000;
+  real *coef = run_coefficients(run, MAX_PAIR_LISTS, run->view->nb.slots);
+  if (!coef) return status_set(ERR_MEMORY, "no memory for the coefficients of viscosity");
+  const struct cg_result result =
+    viscosity_implicit(run->view, viscosity, coef, run->scene.common.viscosity_tolerance, most);
+  if (!(result.residual >= 0)) return run_diverged(run, "the viscous solve is not a number");
+  run_iterations(run, "viscosity", result.iterations, result.residual, result.converged);
+  return OK;
+}
+
+static status apply_viscosity(struct run *run)
+{
+  const struct scene_params *c = &run->scene.common;
+  const struct viscosity viscosity = {(real)c->viscosity, (int)c->viscosity_pairs,
+                                      (int)c->wall_slip};
+  if (c->viscosity_form == VISCOSITY_IMPLICIT) return solve_viscosity(run, viscosity);
+  viscosity_explicit(run->view, viscosity);
+  return OK;
+}
+
+static void apply_xsph(struct run *run)
+{
+  const struct scene_params *c = &run->scene.common;
+  const double h = (double)run->view->nb.kernel.R / 2;
+  const double part = (double)run->view->dt / (double)(real)run->dt; /* of a substep, else 1 */
+  run->view->xsph = (real)(part * (c->xsph + c->xsph_rate * run->dt / h));
+  physics_viscosity(run->view);
+}
+
 status run_viscosity(struct run *run)
 {
-  if (run->scene.common.xsph <= 0) return OK;
+  const unsigned asks = scene_asks(&run->scene) & (CAN(XSPH) | CAN(VISCOSITY) | CAN(TENSION));
+  if (!asks) return OK;
   const enum phase before = clock_enter(PHASE_INTEGRATE);
-  run_density(run);
-  physics_viscosity(run->view);
+  status result = run_density(run);
+  if (asks & CAN(TENSION)) tension_apply(run->view, run->tension);
+  if (asks & CAN(XSPH)) apply_xsph(run);
+  if (result == OK && asks & CAN(VISCOSITY)) result = apply_viscosity(run);
   clock_enter(before);
-  return OK;
+  return result;
 }
 
 status run_forces(struct run *run)
@@ -249,6 +284,7 @@ double run_bytes_per_particle(const struct run *run)
     lists[k + 1] = &run->list[k];
     bytes += (double)run->coefficients[k].capacity;
   }
+  bytes += (double)run->coefficients[MAX_PAIR_LISTS].capacity;
   for (int k = 0; k <= MAX_PAIR_LISTS; k++)
     bytes += sizeof(int) * (2.0 * lists[k]->row_capacity + lists[k]->slot_capacity);
   bytes += sizeof(int) * ((double)run->fluid_cells.capacity + run->wall_cells.capacity +

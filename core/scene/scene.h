@@ -21,7 +21,14 @@ extern "C" {
   P(walls, 0, 0, 1, "lattice|akinci",                                                           \
     "weight of walls: as in a full lattice, or one layer by Akinci et al. 2012 (support 2 dx)") \
   P(xsph, 0, 0, 1, "1", "XSPH coefficient per step (dissipation grows as 1/dt)")                \
-  P(viscosity, 0, 0, 1e9, "Pa s", "dynamic viscosity of the fluid")                             \
+  P(xsph_rate, 0, 0, 1e6, "m/s", "XSPH as a rate: adds xsph_rate dt/(R/2) to xsph")             \
+  P(viscosity, 0, 0, 1e9, "Pa s", "dynamic viscosity; explicit: dt < 0.1 rho0 dx^2/it")         \
+  P(viscosity_form, 1, 0, 1, "explicit|implicit", "forces of old or of new velocities")         \
+  P(viscosity_pairs, 0, 0, 1, "central|full", "pairs pull along their line, or on all of v")    \
+  P(viscosity_tolerance, 1e-6, 0, 1, "1", "implicit: largest relative error of velocity")       \
+  P(wall_slip, 0, 0, 1, "none|free", "do walls hold a viscous fluid, or let it slip?")          \
+  P(tension, 0, 0, 1e9, "N/m", "surface tension")                                               \
+  P(tension_form, 0, 0, 1, "akinci|he", "cohesion and normals, or energy of the surface")       \
   P(jitter, 0, 0, 1, "dx", "largest random displacement at the start, per axis")                \
   P(samples, 200, 1, 1e6, "1", "samples of the metrics over the run, at most one per step")
 

@@ -226,9 +226,49 @@ static void bits(void **unused)
   omp_set_num_threads(2);
 }
 
+/* A field of a solver's own is not called as a public one, nor twice: files name them all. */
+static void names_of_fields(void **unused)
+{
+  (void)unused;
+#define FIELD(type, name, where, life, unit, meaning) #name,
+  static const char *const taken[] = {
+#include "../../core/particles/fields.def"
+  };
+#undef FIELD
+  FOR_SOLVERS(solver, 0)
+  {
+    for (int k = 0; k < solver->num_fields; k++) {
+      const char *name = solver->fields[k].name;
+      int same = 0;
+      for (int j = 0; j < k; j++) same += strcmp(solver->fields[j].name, name) == 0;
+      for (int j = 0; j < NUM_FIELDS; j++) same += strcmp(taken[j], name) == 0;
+      if (same) fail_msg("%s: the field '%s' is there already", solver->name, name);
+    }
+  }
+}
+
+/* `--set KEY=VALUE` and a result file know a parameter by its name alone: the scenes' common ones,
+ * a scene's and a solver's. */
+static void names_of_parameters(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < num_solvers; k++)
+    for (int j = 0; j < solvers[k]->num_params; j++) {
+      const char *name = solvers[k]->params[j].name;
+      if (param_find(scene_param_rows, num_scene_params, name))
+        fail_msg("%s: every scene has a parameter '%s'", solvers[k]->name, name);
+      for (int b = 0; b < num_benchmarks; b++)
+        if (param_find(benchmarks[b]->params, benchmarks[b]->num_params, name))
+          fail_msg("%s: scene %s has a parameter '%s' too", solvers[k]->name, benchmarks[b]->name,
+                   name);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(names_of_fields),
+    cmocka_unit_test(names_of_parameters),
     cmocka_unit_test(rest_stays_at_rest),
     cmocka_unit_test(free_fall_is_exact),
     cmocka_unit_test(lonely_particle_goes_straight),
