@@ -13,7 +13,7 @@ struct row {
   struct trial judged;
   int has_facts;
   double momentum;   /* largest change over what the fluid has at most; where nothing pulls */
-  double energy;     /* (what there was + growth)/what there was */
+  double energy;     /* the largest, over what there was */
   double density;    /* largest in the run [rho0] */
   double iterations; /* mean per step */
   double most;       /* in a step */
@@ -55,21 +55,11 @@ static double momentum_defect(const json_t *facts)
   return scale > 0 ? most / scale : 0;
 }
 
-static double energy_ratio(const json_t *facts)
-{
-  const json_t *total = column(facts, "total_energy"),
-               *potential = column(facts, "potential_energy");
-  double won = 0;
-  for (size_t k = 0; k < json_array_size(potential); k++) won = fmax(won, -at(potential, k));
-  const double scale = at(total, 0) + won;
-  return scale > 0 ? 1 + (largest(total) - at(total, 0)) / scale : (double)NAN;
-}
-
 static void read_facts(struct row *r, const json_t *facts)
 {
   r->has_facts = 1;
   r->momentum = momentum_defect(facts);
-  r->energy = energy_ratio(facts);
+  r->energy = 1 + fact_number(facts, "energy_growth");
   r->density = 1 + largest(column(facts, "density_error_max"));
   r->iterations = fact_number(facts, "iterations.mean");
   r->most = fact_number(facts, "iterations.max");
@@ -135,10 +125,10 @@ static void print_number(double value)
     printf(" %9s", "-");
 }
 
-static void print_row(const struct row *r, const char *before)
+static void print_row(const struct row *r, const struct run *before)
 {
   const char *slash = strrchr(r->run->argv[1], '/');
-  if (strcmp(before, r->run->what) != 0)
+  if (!before || strcmp(before->argv[1], r->run->argv[1]) || strcmp(before->what, r->run->what))
     printf("%s %s (%s)\n", slash ? slash + 1 : r->run->argv[1], r->run->what, r->run->name.text);
   printf("  %-14s %-9s %-10s", r->run->argv[3], outcome_words[r->run->outcome],
          r->judged.first == VERDICT_STABLE ? "-" : verdict_words[r->judged.first]);
@@ -153,13 +143,9 @@ static void print_row(const struct row *r, const char *before)
 
 static void print_table(const struct row *rows, int n)
 {
-  const char *before = "";
   printf("%-16s %-9s %-10s %9s %9s %9s %9s %9s %9s\n", "", "state", "broke", "momentum", "energy",
          "density", "iter", "iter max", "lost");
-  for (int k = 0; k < n; k++) {
-    print_row(&rows[k], before);
-    before = rows[k].run->what;
-  }
+  for (int k = 0; k < n; k++) print_row(&rows[k], k ? rows[k - 1].run : NULL);
 }
 
 static status write_table(const struct row *rows, int n, const char *results, const char *also)

@@ -140,6 +140,7 @@ static json_t *whole(const struct run_facts *f)
   json_object_set_new(object, "parameter_units", units_of(f->num_parameters, f->parameters));
   json_object_set_new(object, "judged", judged(f));
   json_object_set_new(object, "speed_max", number(f->speed_max));
+  json_object_set_new(object, "energy_growth", number(f->energy_growth));
   json_object_set_new(object, "iterations",
                       json_pack("{s:o, s:I, s:I}", "mean", number(f->iterations.mean), "max",
                                 (json_int_t)f->iterations.max, "total",

@@ -67,7 +67,8 @@ struct run_facts {
   const char *reason;          /* one sentence, NULL when there is nothing to say */
   const struct judged *judged; /* in the order of time */
   int num_judged;
-  double speed_max; /* of a particle, at the end of a step [m/s] */
+  double energy_growth; /* largest, as it is judged [1]; NaN: not to be told */
+  double speed_max;     /* of a particle, at the end of a step [m/s] */
   long steps, particles, walls;
   double time_end; /* simulated time reached [s] */
   struct {

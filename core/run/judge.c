@@ -61,23 +61,27 @@ void judge_step(struct run *run)
 
 /* --- samples --- */
 
-/* Energy that the fluid would win by falling to where the lowest particle, of walls too, is. */
+/* Energy that the fluid would win by falling to where the lowest particle, of walls too, is; at
+ * least by one spacing, so that a few particles have a scale, too. */
 static double stored_energy(const struct snapshot *now)
 {
-  double lowest = HUGE_VAL, sum = 0;
+  const double step = now->dx * sqrt((double)inner(now->gravity, now->gravity));
+  double lowest = HUGE_VAL, sum = 0, least = 0;
   for (int i = 0; i < now->n_all; i++)
     lowest = fmin(lowest, -(double)inner(now->gravity, now->x[i]));
   for (int i = 0; i < now->n; i++) {
     const double m = now->light ? now->mass / (double)now->light[i] : now->mass;
     sum += m * (-(double)inner(now->gravity, now->x[i]) - lowest);
+    least += m * step;
   }
-  return sum;
+  return fmax(sum, least);
 }
 
 static void take_start(struct judge *j, const struct snapshot *now, const struct measures *values)
 {
   const double density = 1 + values->value[METRIC_density_error_max];
   j->has_start = 1;
+  j->growth = (double)NAN;
   j->kinetic = values->value[METRIC_kinetic_energy];
   j->stored = stored_energy(now);
   j->density = fmax(criteria[CRITERION_DENSITY].limit, density);
@@ -91,11 +95,12 @@ static int is_closed(const struct run *run)
 
 static void judge_energy(struct run *run, const struct measures *values)
 {
-  const struct judge *j = &run->judge;
+  struct judge *j = &run->judge;
   const double growth = values->value[METRIC_total_energy] - j->kinetic;
   const double won = fmax(0, -values->value[METRIC_potential_energy]);
   const double scale = j->kinetic + fmax(j->stored, won);
   if (!is_closed(run) || !(scale > 0) || isnan(growth)) return;
+  if (!(growth / scale <= j->growth)) j->growth = growth / scale;
   judge(run, CRITERION_ENERGY, growth / scale, criteria[CRITERION_ENERGY].limit);
 }
 

@@ -35,6 +35,7 @@ struct judge {
   int has_start;
   double kinetic, stored; /* energies of the start: to the lowest particle [J, 2-D: J/m] */
   double density;         /* limit [rho0] */
+  double growth;          /* largest so far, of energy [1]; NaN: not to be told */
 };
 
 struct run;
