@@ -35,6 +35,7 @@
 enum { SUMMED, CONTINUITY };
 enum { BY_DENSITY, CLAMPED, FREE };
 enum { NONE, MIRRORED };
+enum { MOST_SUBSTEPS = 100000 };
 
 #define PARAMS(P)                                                                                \
   P(c, 0, 0, 1e6, "m/s", "speed of sound; 0: 10 times the largest speed that the energy allows") \
@@ -222,7 +223,11 @@ static status substeps(struct run *run, state *s, int n)
 static status step(struct run *run, void *self)
 {
   state *s = (state *)self;
-  const int n = (int)fmin(fmax(ceil((double)s->dt / max_dt(s)), 1), 1e9);
+  const double needed = fmax(ceil((double)s->dt / max_dt(s)), 1);
+  if (!(needed <= MOST_SUBSTEPS))
+    return run_diverged(run, "sound at %.3g m/s asks for %.3g substeps, at most %d are done",
+                        (double)s->c, needed, MOST_SUBSTEPS);
+  const int n = (int)needed;
   double error;
   sweep(no_mean, s);
   TRY(substeps(run, s, n));
