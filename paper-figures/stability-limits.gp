@@ -12,6 +12,7 @@ set ytics scale 0 noenhanced
 set ytics ('' 0)
 do for [k = 1:n] { set ytics add (solver[k] k) }
 set lmargin 16
+set xrange [1e3*limits_low:1e3*limits_high]
 set key below noenhanced
 do for [e = -3:4] { set xtics add (2.*10**e, 5.*10**e) }
 why(text) = text eq '' ? '' : '  '.text

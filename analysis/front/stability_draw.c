@@ -51,6 +51,25 @@ static status write_limits(const struct stability *s)
   return file_commit(&file);
 }
 
+/* The range of all that is drawn, for the axis; a scene's own step where there is nothing. */
+static void put_limits_range(const struct stability *s, FILE *contents)
+{
+  double low = HUGE_VAL, high = 0, usual = 1e-3;
+  for (int m = 0; m < s->num_solvers; m++) {
+    const struct candidate_solver *c = &s->solver[m];
+    const double drawn[] = {c->stable, c->predicted.least};
+    if (c->refusal) continue;
+    usual = c->dt;
+    for (int k = 0; k < 2; k++)
+      if (drawn[k] > 0 && c->stable > 0) {
+        low = fmin(low, drawn[k]);
+        high = fmax(high, drawn[k]);
+      }
+  }
+  if (!(high > 0)) low = high = usual;
+  fprintf(contents, "limits_low = %.8g; limits_high = %.8g\n", low / 1.5, high * 3);
+}
+
 /* --- the map --- */
 
 /* The border between two neighbours of a list, and beyond its ends. */
@@ -215,6 +234,7 @@ static status write_contents(const struct stability *s, FILE *contents)
   fprintf(contents, "array solver[%d]\n", able(s));
   for (int m = 0, place = 0; m < s->num_solvers; m++)
     if (!s->solver[m].refusal) put_text(contents, "solver", ++place, s->solver[m].name);
+  put_limits_range(s, contents);
   TRY(write_limits(s));
   return s->map.key ? write_map(s, contents) : OK;
 }
