@@ -224,7 +224,7 @@ static status step(struct run *run, void *self)
 {
   state *s = (state *)self;
   const double needed = fmax(ceil((double)s->dt / max_dt(s)), 1);
-  if (!(needed <= MOST_SUBSTEPS))
+  if (!(needed <= (double)MOST_SUBSTEPS))
     return run_diverged(run, "sound at %.3g m/s asks for %.3g substeps, at most %d are done",
                         (double)s->c, needed, MOST_SUBSTEPS);
   const int n = (int)needed;
