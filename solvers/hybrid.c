@@ -22,7 +22,7 @@
   "the step begins with the move, by the velocity that the last step has projected\n"            \
   "only cells near particles exist; the weights are multilinear\n"                               \
   "a cell holds fluid if its share of the particles' volume, by the weights at its centre, is "  \
-  "0.4 or more (surface = filled, default), since at one particle per cell many cells inside a " \
+  "0.4 or more (surface = filled, default): at one particle per cell many cells inside a "       \
   "fluid have none; occupied is the classical rule\n"                                            \
   "surface = fraction: p = 0 not at the centre of the air's cell, but where the filling falls "  \
   "to 1/2 (Gibou et al. 2002, J. Comput. Phys. 176, 205-227)\n"                                  \
@@ -120,7 +120,6 @@ static status project(struct run *run, void *self)
   TRY(join_cells(run, s));
   sweep_over(to_faces, s, s->num_cells);
   sweep_over(to_centres, s, s->num_cells);
-  sweep_over(fill_faces, s, s->num_cells);
   if (walls) sweep_over(walls_to_faces, s, s->num_cells);
   TRY(solve(run, s));
   sweep_over(correct, s, s->num_cells);

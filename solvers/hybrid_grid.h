@@ -15,9 +15,10 @@ enum { SURFACE_FILLED, SURFACE_OCCUPIED, SURFACE_FRACTION };
 enum { DENSITY_VIRTUAL, DENSITY_REAL };
 enum { AIR, WATER, SOLID };                   /* kinds of cells */
 enum { LIST_AT_CELLS, LIST_AT_REAL, MATRIX }; /* the run's pair lists and coefficients */
-enum { SIDES = 2 * DIM, STENCIL = DIM == 2 ? 13 : 33, LAYERS = 3 };
+enum { SIDES = 2 * DIM, STENCIL = DIM == 2 ? 9 : 27, LAYERS = 3 };
 enum { ROW = (SIDES + LANES - 1) / LANES * LANES }; /* slots of a matrix row */
-#define FILLED ((real)0.4) /* share of the volume from which a cell holds fluid */
+#define FILLED ((real)0.4)   /* share of the volume from which a cell holds fluid */
+#define TOUCHED ((real)0.01) /* part of a particle that reaches a face at least */
 
 #define PARAMS(P)                                                                               \
   P(virtual_spacing, 1, 0.5, 4, "dx", "side of a cell")                                         \
@@ -99,19 +100,16 @@ STAGE void occupied(const state *s, int i)
   for (int d = 0; d < DIM; d++) k[d] = node_whole(floor(s->p.x[i].c[d] * s->inv_h));
   s->keys[i] = key_of(k);
 }
-/* k + s: s in {-1, 0, 1}^d, whose faces are all that the particles of cell k touch, and s = +-2 on
- * each axis */
+/* k + s, s in {-1, 0, 1}^d: all cells whose faces the particles of cell k touch, and all that share
+ * a face with a cell whose faces are touched */
 STAGE void around(const state *s, int i)
 {
-  long long k[DIM], step[DIM];
+  long long k[DIM], other[DIM];
   unsigned long long *out = s->keys + s->num_occupied + (long long)STENCIL * i;
   node_of(s->keys[i], k);
   for (int n = 0; n < STENCIL; n++) {
-    const int axis = n - (STENCIL - SIDES);
-    for (int d = 0, rest = n; d < DIM; d++, rest /= 3)
-      step[d] = k[d] + (axis < 0 ? rest % 3 - 1 : 0);
-    if (axis >= 0) step[axis / 2] += axis % 2 ? 2 : -2;
-    out[n] = key_of(step);
+    for (int d = 0, rest = n; d < DIM; d++, rest /= 3) other[d] = k[d] + rest % 3 - 1;
+    out[n] = key_of(other);
   }
 }
 /* X_I = (k + 1/2) h */
@@ -234,6 +232,17 @@ STAGE void to_faces(const state *s, int I)
     s->old[I].c[d] = s->load[I].c[d] > 0 ? s->old[I].c[d] / s->load[I].c[d] : 0;
 }
 
+/* Do particles reach all faces of cell I, so that its divergence is known? */
+STAGE int touched(const state *s, int I)
+{
+  int all = 1;
+  for (int d = 0; d < DIM; d++) {
+    const int H = high_of(s, I, d);
+    all &= H != I && s->load[I].c[d] > TOUCHED * s->mass && s->load[H].c[d] > TOUCHED * s->mass;
+  }
+  return all;
+}
+
 /* The filling of cell I, sum_j w_Ij dx^d / h^d over the fluid, and what is asked for its density
  * Eq. (13)  kappa max(rho_I - rho0, 0) / (rho0 dt^2),
  *           rho_I/rho0 that filling, or sum_j V_j rho_j/rho0 w_Ij / sum_j V_j w_Ij */
@@ -259,7 +268,7 @@ STAGE void to_centres(const state *s, int I)
       ? fill > (real)0.5
       : key_find(s->keys, s->num_occupied, s->keys[s->num_occupied + s->rank[I]]) >= 0;
   s->fill[I] = fill;
-  s->kind[I] = solid > (real)0.5 ? SOLID : has_fluid ? WATER : AIR;
+  s->kind[I] = solid > (real)0.5 ? SOLID : has_fluid && touched(s, I) ? WATER : AIR;
   s->source[I] = s->kappa * excess / sq(s->dt);
 }
 
@@ -281,23 +290,6 @@ STAGE void walls_to_faces(const state *s, int I)
   for (int d = 0; d < DIM; d++) s->wall_u[I].c[d] = n.c[d] > 0 ? s->wall_u[I].c[d] / n.c[d] : 0;
 }
 
-/* A face of a filled cell that no particle reaches: the mean of those beside it that some do. */
-STAGE void fill_faces(const state *s, int I)
-{
-  for (int d = 0; d < DIM; d++) {
-    if (s->load[I].c[d] > 0) continue;
-    real total = 0;
-    int num = 0;
-    for (int n = 0; n < SIDES; n++) {
-      const int K = s->beside[ROW * I + n];
-      if (K == I || !(s->load[K].c[d] > 0)) continue;
-      total += s->old[K].c[d];
-      num++;
-    }
-    s->old[I].c[d] = num ? total / (real)num : 0;
-  }
-}
-
 /* --- projection on the grid */
 
 /* Velocity of the face between cell J and cell I above it on axis d, before the projection: that of
@@ -312,12 +304,12 @@ STAGE real held(const state *s, int J, int I, int d)
   return low ? larger(u, wall) : smaller(u, wall);
 }
 
-/* Part of the way from the centre of fluid cell I to that of air cell J at which p is 0 */
+/* Part of the way from the centre of fluid cell I to that of air cell J at which p is 0:
+ * (fill_I - 1/2) / (fill_I - fill_J) */
 STAGE real way_to_surface(const state *s, int I, int J)
 {
-  if (s->surface != SURFACE_FRACTION) return 1;
-  const real out = J == I ? 0 : s->fill[J];
-  return larger((s->fill[I] - (real)0.5) / (s->fill[I] - out), (real)0.01);
+  if (s->surface != SURFACE_FRACTION || s->fill[J] >= (real)0.5) return 1;
+  return larger((s->fill[I] - (real)0.5) / (s->fill[I] - s->fill[J]), (real)0.01);
 }
 
 /* alpha_IJ = 1/(rho0 h^2) to fluid, alpha_II = sum of those to fluid and air,
@@ -328,17 +320,14 @@ STAGE void equation(const state *s, int I)
   real diag = 0, div = 0;
   const int is_fluid = s->kind[I] == WATER;
   for (int n = 0; n < ROW; n++) {
-    const int J = s->beside[ROW * I + n];
-    row[n] = 0;
-    if (n >= SIDES || !is_fluid) continue;
-    const int kind = J == I ? AIR : s->kind[J];
-    if (kind == WATER) row[n] = s->unit;
-    if (kind != SOLID) diag += kind == WATER ? s->unit : s->unit / way_to_surface(s, I, J);
+    const int J = s->beside[ROW * I + n], kind = is_fluid && n < SIDES ? s->kind[J] : SOLID;
+    row[n] = kind == WATER ? s->unit : 0;
+    if (kind == AIR) diag += s->unit / way_to_surface(s, I, J);
+    diag += row[n];
   }
   for (int d = 0; d < DIM && is_fluid; d++) {
     const int H = high_of(s, I, d), L = low_of(s, I, d);
-    const real low = held(s, L, I, d);
-    div += ((H == I ? low : held(s, I, H, d)) - low) * s->inv_h;
+    div += (held(s, I, H, d) - held(s, L, I, d)) * s->inv_h;
   }
   s->source[I] = is_fluid ? s->source[I] - div / s->dt : 0;
   s->diag[I] = is_fluid ? larger(diag, (real)1e-6 * s->unit) : 1;
@@ -352,8 +341,7 @@ STAGE void correct(const state *s, int I)
 {
   int known = 0;
   for (int d = 0; d < DIM; d++) {
-    const int J = low_of(s, I, d), above = s->kind[I];
-    const int below = J == I && above == WATER ? AIR : s->kind[J];
+    const int J = low_of(s, I, d), above = s->kind[I], below = s->kind[J];
     real gradient = 0;
     if (above == WATER && below == WATER)
       gradient = s->pI[I] - s->pI[J];
