@@ -13,6 +13,11 @@
  * 43(3), 28 (2024), doi:10.1145/3649888. Equation numbers are that paper's; its equations of
  * Sec. 6.3 have no numbers but for (21). The grid is in hybrid_grid.h.
  *
+ * Momentum: the transfers keep the linear one exactly, APIC's also the angular one, that of C_p
+ * included, at fixed positions. The pressure keeps it only to first order in dx, since the mass m_g
+ * at a face is not rho0 h^d: four steps of a turning square with a jitter of 0.15 dx lose 3, 1, 0.3
+ * % of what flip exchanges at 12, 24, 48 particles a side.
+ *
  * Differences from the papers: see DIFFERENCES below. */
 #include "hybrid_grid.h"
 
@@ -28,7 +33,7 @@
   "to 1/2 (Gibou et al. 2002, J. Comput. Phys. 176, 205-227)\n"                                  \
   "walls are whole cells: those with more than half of their volume in wall particles\n"         \
   "faces that touch no fluid take the mean change of those beside them that do, inside walls "   \
-  "their mean velocity, in three layers: spray keeps its own velocity that way\n"                \
+  "their mean velocity, in d layers: spray keeps its own velocity that way\n"                    \
   "density compensation is Eq. (13) of Liu et al. 2024 as dual-sc takes it: kappa is a number, " \
   "the density that of the particles (density = real) or of the cell (virtual)\n"                \
   "a particle exactly between two cells takes the affine field of the upper one\n"               \
@@ -62,8 +67,10 @@ STAGE void to_particles(const state *s, int i)
   if (s->slip) s->slip[i] = sub(grid, s->p.v[i]);
 }
 
-/* Jiang et al. Sec. 5.3   c_p,d = sum_g grad w_gp v_g,d: per axis the particle is the part t of the
- * way from the face plane below it to that above it, N is 1 - t or t there, dN/dx -1/h or 1/h. */
+/* Jiang et al. Sec. 5.3   c_p,d = sum_g grad w_gp v_g,d, the same with v_g - v_p since sum_g grad
+ * w_gp = 0: so a face that no particle reaches, beside a particle on the edge of its own, is left
+ * out. Per axis the particle is the part t of the way from the face plane below it to that above
+ * it, N is 1 - t or t there, dN/dx -1/h or 1/h. */
 STAGE void to_affine(const state *s, int i)
 {
   for (int d = 0; d < DIM; d++) {
@@ -81,7 +88,8 @@ STAGE void to_affine(const state *s, int i)
         N.c[e] = (1 - t.c[e]) * below + t.c[e] * above;
         dN.c[e] = s->inv_h * (above - below);
       }
-      const lanes u = only(iI, of(s->u, iI).c[d]);
+      const lanes load = only(iI, of(s->load, iI).c[d]);
+      const lanes u = positive(load, of(s->u, iI).c[d] - s->p.v[i].c[d]);
       for (int e = 0; e < DIM; e++) {
         lanes w = dN.c[e];
         for (int f = 0; f < DIM; f++)

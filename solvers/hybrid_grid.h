@@ -15,7 +15,7 @@ enum { SURFACE_FILLED, SURFACE_OCCUPIED, SURFACE_FRACTION };
 enum { DENSITY_VIRTUAL, DENSITY_REAL };
 enum { AIR, WATER, SOLID };                   /* kinds of cells */
 enum { LIST_AT_CELLS, LIST_AT_REAL, MATRIX }; /* the run's pair lists and coefficients */
-enum { SIDES = 2 * DIM, STENCIL = DIM == 2 ? 9 : 27, LAYERS = 3 };
+enum { SIDES = 2 * DIM, STENCIL = DIM == 2 ? 9 : 27, LAYERS = DIM };
 enum { ROW = (SIDES + LANES - 1) / LANES * LANES }; /* slots of a matrix row */
 #define FILLED ((real)0.4)   /* share of the volume from which a cell holds fluid */
 #define TOUCHED ((real)0.01) /* part of a particle that reaches a face at least */

@@ -305,7 +305,7 @@ static inline void twin_project(struct cloud *c, const struct choices *o)
   twin_pressure(c, o);
   for (int I = 0; I < NUM_CELLS; I++)
     for (int d = 0; d < DIM && g.exists[I]; d++) twin_correct(c, o, I, d);
-  for (int k = 0; k < 3; k++) twin_spread();
+  for (int k = 0; k < DIM; k++) twin_spread();
   for (int i = 0; i < c->n; i++) twin_particle(c, o, i);
   for (int i = 0; i < c->n && o->method == NFLIP; i++) twin_hold(c, i);
 }
