@@ -100,8 +100,8 @@ STAGE void occupied(const state *s, int i)
   for (int d = 0; d < DIM; d++) k[d] = node_whole(floor(s->p.x[i].c[d] * s->inv_h));
   s->keys[i] = key_of(k);
 }
-/* k + s, s in {-1, 0, 1}^d: all cells whose faces the particles of cell k touch, and all that share
- * a face with a cell whose faces are touched */
+/* k_out = k + s, s in {-1, 0, 1}^d: all cells whose faces the particles of cell k touch, and all
+ * that share a face with a cell whose faces are touched */
 STAGE void around(const state *s, int i)
 {
   long long k[DIM], other[DIM];
