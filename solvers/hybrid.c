@@ -15,29 +15,31 @@
  *
  * Momentum: the transfers keep the linear one exactly, APIC's also the angular one, that of C_p
  * included, at fixed positions. The pressure keeps it only to first order in dx, since the mass m_g
- * at a face is not rho0 h^d: four steps of a turning square with a jitter of 0.15 dx lose 3, 1, 0.3
- * % of what flip exchanges at 12, 24, 48 particles a side.
+ * at a face is not rho0 h^d: four steps of a turning square with a jitter of 0.15 dx lose 2, 0.7,
+ * 0.2 % of what flip exchanges at 12, 24, 48 particles a side.
  *
  * Differences from the papers: see DIFFERENCES below. */
 #include "hybrid_grid.h"
 
-#define DIFFERENCES                                                                              \
-  "forces and XSPH act on the particles before their velocity goes to the grid: the same as on " \
-  "the grid for gravity\n"                                                                       \
-  "the step begins with the move, by the velocity that the last step has projected\n"            \
-  "only cells near particles exist; the weights are multilinear\n"                               \
-  "a cell holds fluid if its share of the particles' volume, by the weights at its centre, is "  \
-  "0.4 or more (surface = filled, default): at one particle per cell many cells inside a "       \
-  "fluid have none; occupied is the classical rule\n"                                            \
-  "surface = fraction: p = 0 not at the centre of the air's cell, but where the filling falls "  \
-  "to 1/2 (Gibou et al. 2002, J. Comput. Phys. 176, 205-227)\n"                                  \
-  "walls are whole cells: those with more than half of their volume in wall particles\n"         \
-  "faces that touch no fluid take the mean change of those beside them that do, inside walls "   \
-  "their mean velocity, in d layers: spray keeps its own velocity that way\n"                    \
-  "density compensation is Eq. (13) of Liu et al. 2024 as dual-sc takes it: kappa is a number, " \
-  "the density that of the particles (density = real) or of the cell (virtual)\n"                \
-  "a particle exactly between two cells takes the affine field of the upper one\n"               \
-  "nflip: near walls the approach of a particle to them is taken out, Eq. (17) of Liu et al. "   \
+#define DIFFERENCES                                                                                \
+  "forces and XSPH act on the particles before their velocity goes to the grid: the same as on "   \
+  "the grid for gravity\n"                                                                         \
+  "the step begins with the move, by the velocity that the last step has projected\n"              \
+  "only cells near particles exist; the weights are multilinear\n"                                 \
+  "surface = fraction (default): a cell holds fluid if the particles fill it, by the weights at "  \
+  "its centre, to more than 1/2, and p = 0 where the filling falls to 1/2 (Gibou et al. 2002, "    \
+  "J. Comput. Phys. 176, 205-227): the pressure is then second order in dx, at the centres of "    \
+  "the air's cells first. filled: cells filled to 0.4 or more, p = 0 at those centres. occupied: " \
+  "the same with cells that hold a particle, the classical rule: at one particle per cell many "   \
+  "cells inside a fluid hold none, and it swells by half\n"                                        \
+  "an empty cell is air if no particle reaches some face of it\n"                                  \
+  "walls are whole cells: those with more than half of their volume in wall particles\n"           \
+  "faces that touch no fluid take the mean change of those beside them that do, inside walls "     \
+  "their mean velocity, in d layers: spray keeps its own velocity that way\n"                      \
+  "density compensation is Eq. (13) of Liu et al. 2024 as dual-sc takes it: kappa is a number, "   \
+  "the density that of the particles (density = real) or of the cell (virtual)\n"                  \
+  "a particle exactly between two cells takes the affine field of the upper one\n"                 \
+  "nflip: near walls the approach of a particle to them is taken out, Eq. (17) of Liu et al. "     \
   "2024 times 2, since its particles are not moved by the velocity that keeps them out"
 
 /* --- grid to particles */

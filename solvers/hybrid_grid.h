@@ -22,7 +22,8 @@ enum { ROW = (SIDES + LANES - 1) / LANES * LANES }; /* slots of a matrix row */
 
 #define PARAMS(P)                                                                               \
   P(virtual_spacing, 1, 0.5, 4, "dx", "side of a cell")                                         \
-  P(surface, SURFACE_FILLED, 0, 2, "filled|occupied|fraction", "which cells are fluid")         \
+  P(surface, SURFACE_FRACTION, 0, 2, "filled|occupied|fraction",                                \
+    "which cells are fluid, and where p is 0")                                                  \
   P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without") \
   P(density, DENSITY_REAL, 0, 1, "virtual|real", "where the density of Eq. (13) is taken")      \
   P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                          \
@@ -232,6 +233,10 @@ STAGE void to_faces(const state *s, int I)
     s->old[I].c[d] = s->load[I].c[d] > 0 ? s->old[I].c[d] / s->load[I].c[d] : 0;
 }
 
+STAGE int is_occupied(const state *s, int I)
+{
+  return key_find(s->keys, s->num_occupied, s->keys[s->num_occupied + s->rank[I]]) >= 0;
+}
 /* Do particles reach all faces of cell I, so that its divergence is known? */
 STAGE int touched(const state *s, int I)
 {
@@ -262,13 +267,12 @@ STAGE void to_centres(const state *s, int I)
   const real fill = unit * sum(fluid), solid = unit * sum(all) - fill, V = sum(volume);
   const real real_excess = V > 0 ? sum(crowd) / V : 0;
   const real excess = larger(s->density == DENSITY_REAL ? real_excess : fill - 1, 0);
-  const int has_fluid =
-    s->surface == SURFACE_FILLED ? fill >= FILLED
-    : s->surface == SURFACE_FRACTION
-      ? fill > (real)0.5
-      : key_find(s->keys, s->num_occupied, s->keys[s->num_occupied + s->rank[I]]) >= 0;
+  const int filled = s->surface == SURFACE_FRACTION ? fill > (real)0.5 : fill >= FILLED;
+  const int is_fluid = s->surface == SURFACE_OCCUPIED
+                         ? is_occupied(s, I)
+                         : filled && (touched(s, I) || is_occupied(s, I));
   s->fill[I] = fill;
-  s->kind[I] = solid > (real)0.5 ? SOLID : has_fluid && touched(s, I) ? WATER : AIR;
+  s->kind[I] = solid > (real)0.5 ? SOLID : is_fluid ? WATER : AIR;
   s->source[I] = s->kappa * excess / sq(s->dt);
 }
 
@@ -313,7 +317,8 @@ STAGE real way_to_surface(const state *s, int I, int J)
 }
 
 /* alpha_IJ = 1/(rho0 h^2) to fluid, alpha_II = sum of those to fluid and air,
- * b_I = -(1/dt) sum_d (u_I+d,d - u_I,d)/h + Eq. (13) */
+ * b_I = -(1/dt) sum_d (u_I+d,d - u_I,d)/h + Eq. (13), without axes on one side of which no particle
+ * reaches the face: those of a film exactly between two cells */
 STAGE void equation(const state *s, int I)
 {
   real *row = s->alpha + ROW * I;
@@ -327,7 +332,8 @@ STAGE void equation(const state *s, int I)
   }
   for (int d = 0; d < DIM && is_fluid; d++) {
     const int H = high_of(s, I, d), L = low_of(s, I, d);
-    div += (held(s, I, H, d) - held(s, L, I, d)) * s->inv_h;
+    if (s->load[I].c[d] > 0 && s->load[H].c[d] > 0)
+      div += (held(s, I, H, d) - held(s, L, I, d)) * s->inv_h;
   }
   s->source[I] = is_fluid ? s->source[I] - div / s->dt : 0;
   s->diag[I] = is_fluid ? larger(diag, (real)1e-6 * s->unit) : 1;

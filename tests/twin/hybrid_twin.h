@@ -103,15 +103,14 @@ static inline void twin_kind(const struct cloud *c, const struct choices *o, int
   }
   g.fill[I] = fluid;
   g.excess[I] = fmax(o->real_density ? (volume > 0 ? crowd / volume : 0) : fluid - 1, 0);
-  const int wet = o->surface == FILLED     ? fluid >= 0.4
-                  : o->surface == FRACTION ? fluid > 0.5
-                                           : inside;
   int touched = 1;
   for (int d = 0; d < DIM; d++) {
     const int H = beside(I, d, 1);
     touched &= H >= 0 && g.load[I][d] > 0.01 * c->mass && g.load[H][d] > 0.01 * c->mass;
   }
-  g.kind[I] = solid > 0.5 ? SOLID : wet && touched ? WATER : AIR;
+  const int filled = o->surface == FRACTION ? fluid > 0.5 : fluid >= 0.4;
+  const int wet = o->surface == OCCUPIED ? inside : filled && (touched || inside);
+  g.kind[I] = solid > 0.5 ? SOLID : wet ? WATER : AIR;
 }
 
 /* --- the projection */
@@ -142,7 +141,7 @@ static inline void twin_row(const struct cloud *c, const struct choices *o, int 
   memset(matrix[row], 0, sizeof matrix[row]);
   for (int d = 0; d < DIM; d++) {
     const int H = beside(I, d, 1);
-    div += (twin_held(H, d) - twin_held(I, d)) / g.h;
+    if (g.load[I][d] > 0 && g.load[H][d] > 0) div += (twin_held(H, d) - twin_held(I, d)) / g.h;
     for (int step = -1; step <= 1; step += 2) {
       const int J = beside(I, d, step);
       if (g.kind[J] == WATER) matrix[row][row_of[J]] = -unit;

@@ -259,6 +259,28 @@ static void test_divergence(void **unused)
   }
 }
 
+/* A row of particles that close in on each other, exactly between two rows of cells whose outer
+ * faces none of them reaches: it feels a pressure, and the same one if it moves across. */
+static void test_row_between_cells(void **unused)
+{
+  (void)unused;
+  static struct cloud c, moving;
+  const struct setting settings[] = {{"kappa", 0}, {"surface", FILLED}, {NULL, 0}};
+  cloud_make(&c, 4, 0, KERNEL_CUBIC, 1);
+  c.n = c.n_all = 8;
+  for (int i = 0; i < c.n; i++)
+    for (int d = 0; d < DIM; d++) {
+      c.x[i][d] = d == 0 ? (i - 3.25) * c.dx : d == 1 ? 0 : c.dx / 2;
+      c.v[i][d] = d == 0 ? -(i - 3.25) * 0.1 : 0;
+    }
+  moving = c;
+  for (int i = 0; i < c.n; i++) moving.v[i][1] = 0.2;
+  cloud_run(&c, &solver_flip, settings, 0);
+  cloud_run(&moving, &solver_flip, settings, 0);
+  assert_true(c.p[3] > 0 && c.p[4] > 0);
+  assert_true(apart(c.p, moving.p, c.n, largest_of(c.p, c.n)) < 10 * TWIN_TOLERANCE);
+}
+
 /* --- known answers */
 
 #if defined(SPHBENCH_HAVE_REFERENCE) && !defined(REAL_IS_FLOAT) && DIM == 2
@@ -346,6 +368,7 @@ int main(void)
     cmocka_unit_test(test_constant_field),
     cmocka_unit_test(test_momentum_of_transfers),
     cmocka_unit_test(test_divergence),
+    cmocka_unit_test(test_row_between_cells),
     TEST_ORDERS cmocka_unit_test(test_narrow_support),
   };
   return cmocka_run_group_tests_name("hybrid twin " SPHBENCH_VARIANT, tests, NULL, NULL);
