@@ -191,11 +191,9 @@ static void stop(struct run *run, void *self)
   memory_give(s->beside, s->beside_bytes);
 }
 
-/* No third row of C in 2-D, no walls' velocity without walls. */
 static int uses(const void *self, const char *field)
 {
-  const state *s = (const state *)self;
-  if (strcmp(field, "wall_u") == 0) return s->p.n_all > s->p.n;
+  (void)self;
   return DIM == 3 || strcmp(field, "cz") != 0;
 }
 

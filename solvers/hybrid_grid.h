@@ -34,27 +34,26 @@ enum { ROW = (SIDES + LANES - 1) / LANES * LANES }; /* slots of a matrix row */
   PARAMS(P)            \
   P(blend, 0.9, 0, 1, "1", "share alpha of the particle's own velocity that is kept, Eq. (21)")
 
-#define FIELDS(F)                                                                     \
-  F(vec, X, VIRTUAL, KEPT, "m", "centre of a cell")                                   \
-  F(int, rank, VIRTUAL, KEPT, "1", "place of a cell among the sorted keys")           \
-  F(int, ranked, VIRTUAL, STEP, "1", "the cell at that place")                        \
-  F(int, first, VIRTUAL, STEP, "1", "first slot of a matrix row")                     \
-  F(int, last, VIRTUAL, STEP, "1", "end of a matrix row")                             \
-  F(int, kind, VIRTUAL, STEP, "1", "0 air, 1 fluid, 2 wall")                          \
-  F(int, known, VIRTUAL, STEP, "1", "bit d: face d has been given its velocity")      \
-  F(int, reached, VIRTUAL, STEP, "1", "known, with the layer that is being added")    \
-  F(real, fill, VIRTUAL, STEP, "1", "volume of fluid in a cell over its own")         \
-  F(vec, load, VIRTUAL, STEP, "kg", "mass at the low faces")                          \
-  F(vec, old, VIRTUAL, STEP, "m/s", "velocity at the low faces, from the particles")  \
-  F(vec, u, VIRTUAL, STEP, "m/s", "velocity at the low faces, projected")             \
-  F(vec, wall_u, VIRTUAL, STEP, "m/s", "velocity of the walls at the low faces")      \
-  F(real, source, VIRTUAL, STEP, "1/s^2", "right-hand side of the pressure equation") \
-  F(real, diag, VIRTUAL, STEP, "m^3/kg/m^2", "diagonal of the matrix")                \
-  F(real, pI, VIRTUAL, STEP, "Pa", "pressure of a cell")                              \
-  F(real, open, VIRTUAL, STEP, "1", "0 for a wall cell, else 1")                      \
-  F(real, weight, VIRTUAL, STEP, "1", "of a cell in CG's inner product: 1")           \
-  F(real, r, VIRTUAL, STEP, "1/s^2", "residual of CG")                                \
-  F(real, d, VIRTUAL, STEP, "Pa", "direction of CG")                                  \
+#define FIELDS(F)                                                                            \
+  F(vec, X, VIRTUAL, KEPT, "m", "centre of a cell")                                          \
+  F(int, rank, VIRTUAL, KEPT, "1", "place of a cell among the sorted keys")                  \
+  F(int, ranked, VIRTUAL, STEP, "1", "the cell at that place")                               \
+  F(int, first, VIRTUAL, STEP, "1", "first slot of a matrix row")                            \
+  F(int, last, VIRTUAL, STEP, "1", "end of a matrix row")                                    \
+  F(int, kind, VIRTUAL, STEP, "1", "0 air, 1 fluid, 2 wall")                                 \
+  F(int, known, VIRTUAL, STEP, "1", "bit d: face d has been given its velocity")             \
+  F(int, reached, VIRTUAL, STEP, "1", "known, with the layer that is being added")           \
+  F(real, fill, VIRTUAL, STEP, "1", "volume of fluid in a cell over its own")                \
+  F(vec, load, VIRTUAL, STEP, "kg", "mass at the low faces")                                 \
+  F(vec, old, VIRTUAL, STEP, "m/s", "velocity at the low faces, from the particles")         \
+  F(vec, u, VIRTUAL, STEP, "m/s", "velocity at the low faces: of the walls, then projected") \
+  F(real, source, VIRTUAL, STEP, "1/s^2", "right-hand side of the pressure equation")        \
+  F(real, diag, VIRTUAL, STEP, "m^3/kg/m^2", "diagonal of the matrix")                       \
+  F(real, pI, VIRTUAL, STEP, "Pa", "pressure of a cell")                                     \
+  F(real, open, VIRTUAL, STEP, "1", "0 for a wall cell, else 1")                             \
+  F(real, weight, VIRTUAL, STEP, "1", "of a cell in CG's inner product: 1")                  \
+  F(real, r, VIRTUAL, STEP, "1/s^2", "residual of CG")                                       \
+  F(real, d, VIRTUAL, STEP, "Pa", "direction of CG")                                         \
   F(real, q, VIRTUAL, STEP, "1/s^2", "matrix times direction of CG")
 
 #define FIELDS_APIC(F)                                                          \
@@ -276,7 +275,8 @@ STAGE void to_centres(const state *s, int I)
   s->source[I] = s->kappa * excess / sq(s->dt);
 }
 
-/* The walls' velocity at the faces near them: sum_s w_gs v_s / sum_s w_gs */
+/* The walls' velocity at the faces near them, in u until the projection:
+ * v_g = sum_s w_gs v_s / sum_s w_gs */
 STAGE void walls_to_faces(const state *s, int I)
 {
   vecs number = NO_VECS, flow = NO_VECS;
@@ -290,8 +290,8 @@ STAGE void walls_to_faces(const state *s, int I)
     }
   }
   const vec n = sum(number);
-  s->wall_u[I] = sum(flow);
-  for (int d = 0; d < DIM; d++) s->wall_u[I].c[d] = n.c[d] > 0 ? s->wall_u[I].c[d] / n.c[d] : 0;
+  s->u[I] = sum(flow);
+  for (int d = 0; d < DIM; d++) s->u[I].c[d] = n.c[d] > 0 ? s->u[I].c[d] / n.c[d] : 0;
 }
 
 /* --- projection on the grid */
@@ -303,7 +303,7 @@ STAGE real held(const state *s, int J, int I, int d)
   const real u = s->old[I].c[d];
   const int low = s->kind[J] == SOLID, high = s->kind[I] == SOLID;
   if (low == high) return u;
-  const real wall = s->wall_u[I].c[d];
+  const real wall = s->u[I].c[d];
   if (s->kind[low ? I : J] == WATER) return wall;
   return low ? larger(u, wall) : smaller(u, wall);
 }
