@@ -10,12 +10,8 @@ set format y '%g'
 set format x '%g'
 set xlabel label_cost
 set ylabel label_error noenhanced
-# a tic at every power of ten is too few where there are hardly two of them
-more(low, high, e) = high/low < 200 && e >= floor(log10(low)) - 1 && e <= log10(high) + 1
-do for [e = -20:20] {
-  if (more(error_low, error_high, e)) { set ytics add (2.*10**e, 5.*10**e) }
-  if (more(cost_low, cost_high, e)) { set xtics add (2.*10**e, 5.*10**e) }
-}
+x_low = cost_low; x_high = cost_high; y_low = error_low; y_high = error_high
+load shared.'log-tics.gp'
 set title scene noenhanced
 set key outside right top vertical Left reverse
 set xrange [cost_low/1.3:cost_high*1.3]

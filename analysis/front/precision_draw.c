@@ -117,6 +117,14 @@ static int count(const struct precision *p, int method, int valid)
   return n;
 }
 
+static int count_exact(const struct precision *p, int method)
+{
+  int n = 0;
+  for (int k = 0; k < p->n; k++)
+    n += p->point[k].knobs.method == method && !p->point[k].reason && p->point[k].error == 0;
+  return n;
+}
+
 /* Failed runs have neither time nor error: they are drawn in the margin, one mark each, solver
  * after solver. */
 static status write_failed(const struct precision *p, int *total)
@@ -176,8 +184,10 @@ static status write_method(const struct precision *p, int m, int number, FILE *c
   static const char *const arrays[NUM_BLOCKS] = {"file", "front", "pairs_front"};
   const int valid = count(p, m, 1), invalid = count(p, m, 0);
   const char *name = p->study.method[m].name;
-  const struct path title =
+  struct path title =
     invalid ? path_of("%s (%d of %d failed)", name, invalid, valid + invalid) : path_of("%s", name);
+  const int exact = count_exact(p, m); /* has no place on a logarithmic axis */
+  if (exact) title = path_of("%s (%d have no error)", title.text, exact);
   for (int block = 0; block < NUM_BLOCKS; block++) {
     const struct path file = data_name(name, block_suffix[block]);
     int n;

@@ -201,7 +201,7 @@ static double iterations_for(double factor)
 
 static void put_effort(struct words *w, const struct method *m, double factor)
 {
-  const double converged = 1e-10, most = 10000;
+  const double converged = 1e-10, most = 100000;
   for (int k = 0; k < m->num_tolerances; k++) {
     const struct tolerance *t = &m->tolerance[k];
     const double wanted = factor > 0 ? t->initial * factor : converged;
@@ -369,4 +369,28 @@ status values_parse(const char *flag, const char *text, struct values *values)
     if (!*end) return OK;
     at = end + 1;
   }
+}
+
+status value_parse(const char *flag, const char *text, double *value)
+{
+  struct values one;
+  if (!text) return OK;
+  TRY(values_parse(flag, text, &one));
+  if (one.n != 1) return user_error("%s: '%s' found, one number expected", flag, text);
+  *value = one.value[0];
+  return OK;
+}
+
+status study_sets(struct study_request *ask, int argc, char **argv)
+{
+  for (int i = 2; i < argc; i++) {
+    const char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
+                        : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
+                                                                        : NULL;
+    if (!value) continue;
+    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
+    if (ask->num_sets == MOST_SETS) return user_error("--set: more than %d of them", MOST_SETS);
+    ask->set[ask->num_sets++] = (char *)value;
+  }
+  return OK;
 }

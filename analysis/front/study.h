@@ -101,7 +101,11 @@ char *study_failure(const struct queue *queue, int run, json_t **facts);
 status study_distance(const struct study *study, const struct queue *queue, int run, int other,
                       double *distance);
 
-/* "1,2,3" as numbers > 0. ERR_USER with the flag. */
+/* "1,2,3" as numbers > 0; what was there is kept where text is NULL. ERR_USER with the flag. */
 status values_parse(const char *flag, const char *text, struct values *values);
+status value_parse(const char *flag, const char *text, double *value);
+
+/* The values of all --set, which may be given several times. ERR_USER. */
+status study_sets(struct study_request *ask, int argc, char **argv);
 
 #endif
