@@ -7,6 +7,7 @@
 #include "arguments.h"
 #include "figure.h"
 #include "front.h"
+#include "study_file.h"
 
 enum { LEAST_LEVELS = 4 };
 
@@ -29,7 +30,7 @@ static status parse(struct typed *t, int argc, char **argv)
     {"--seeds", &t->seeds, NULL},         {"--jitter", &t->jitter, NULL},
     {"--timeout", &t->timeout, NULL},     {"--jobs", &t->jobs, NULL},
     {"--json", &t->json, NULL},           {"--quick", NULL, &t->ask.quick},
-    {"--quiet", NULL, &t->quiet},
+    {"--error", &t->ask.error, NULL},     {"--quiet", NULL, &t->quiet},
   };
   const struct arguments what = {"convergence", flags, sizeof flags / sizeof *flags,
                                  &t->ask.scene, 1,     NULL};
@@ -74,6 +75,7 @@ static double least(const struct values *values)
 static status take_levels(const struct typed *t, struct convergence *c)
 {
   struct study *s = &c->study;
+  if (s->file && s->file->levels.t_end > 0) s->plan.t_end = s->file->levels.t_end;
   const struct values halves = {.value = {1, 0.5, 0.25, 0.125}, .n = 4};
   struct values spacings = c->over_dt ? s->plan.spacing : s->levels, steps = halves;
   TRY(values_parse("--spacings", t->spacings, &spacings));

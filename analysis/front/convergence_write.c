@@ -155,6 +155,10 @@ static void put_ranges(const struct convergence *c, FILE *contents)
       low = fmin(low, level->error / (1 + 2 * level->sd));
       high = fmax(high, level->error * (1 + 2 * level->sd));
     }
+  fputs("set xtics (", contents);
+  for (int k = 0; k < c->h.n; k++)
+    fprintf(contents, "%s'%.3g' %.9g", k ? ", " : "", c->h.value[k], c->h.value[k]);
+  fputs(")\n", contents);
   fprintf(contents, "error_low = %.8g\nerror_high = %.8g\nh_low = %.8g\nh_high = %.8g\n", low, high,
           c->h.value[c->h.n - 1], c->h.value[0]);
 }

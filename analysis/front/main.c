@@ -29,6 +29,7 @@ static const char usage[] =
   "  speed [--json FILE]       time per particle of search, iteration and step\n"
   "  precision SCENE           error against run time, with figures and a table;\n"
   "         [--quick] [--solvers A,B] [--aa] [--kind total|spatial|temporal|algebraic]\n"
+  "         [--error METRIC]\n"
   "         [--spacings A,B] [--dt-factors A,B] [--tolerance-factors A,B] [--t-end S]\n"
   "         [--set KEY=VALUE]... [--dim 2|3] [--precision float|double] [--backend B]\n"
   "         [--repeat N] [--threads N] [--timeout S] [--budget S] [--jobs N] [--fresh]\n"

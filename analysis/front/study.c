@@ -85,6 +85,25 @@ static double parameter_default(const json_t *shown, const char *name)
   return json_number_value(json_object_get(parameter(shown, name), "default"));
 }
 
+static status check_error(const struct study *s)
+{
+  const json_t *metrics = json_object_get(s->scene, "metrics");
+  const char *names[256];
+  int n = 0;
+  size_t k;
+  json_t *row;
+  if (has_name(metrics, s->error)) return OK;
+  json_array_foreach((json_t *)metrics, k, row)
+  {
+    if (json_string_value(row) && n < 256) names[n++] = json_string_value(row);
+  }
+  const char *near = nearest_name(s->error, names, n);
+  return near ? user_error("--error: the scene has no '%s'; the nearest metric is '%s'", s->error,
+                           near)
+              : user_error("--error: the scene has no '%s'; 'sphbench show %s' lists its metrics",
+                           s->error, s->ask.scene);
+}
+
 static status learn_scene(struct study *s, const struct path *executable)
 {
   json_t *list = told(executable, "list", "scenes");
@@ -93,13 +112,12 @@ static status learn_scene(struct study *s, const struct path *executable)
   TRY(known);
   s->scene = told(executable, "show", s->ask.scene);
   if (!s->scene) return status_set(ERR_IO, "'%s' cannot show its scenes", executable->text);
-  s->error = json_string_value(json_object_get(s->scene, "error"));
+  s->error = s->ask.error ? s->ask.error : json_string_value(json_object_get(s->scene, "error"));
   s->spacing = parameter_default(s->scene, "spacing");
   s->dt = parameter_default(s->scene, "dt");
   s->t_end = parameter_default(s->scene, "t_end");
   s->is_projection = has_name(json_object_get(s->scene, "asks"), "PROJECT");
-  s->is_periodic = has_name(json_object_get(s->scene, "asks"), "PERIODIC");
-  if (s->error) return OK;
+  if (s->error) return check_error(s);
   return user_error("%s: the scene '%s' has no known truth to measure an error against",
                     s->ask.verb, s->ask.scene);
 }
