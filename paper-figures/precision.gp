@@ -3,7 +3,7 @@
 # (file of the front) and label_cost, and loads this.
 #
 # Failed runs have neither error nor cost: they stand in the margin at the top, one cross each.
-width = 1000; height = 640
+width = 1080; height = 620
 load shared.'style.gp'
 set logscale xy
 set format y '%g'

@@ -192,6 +192,42 @@ static status write_contents(const struct convergence *c, FILE *contents)
   return OK;
 }
 
+/* What the report wants to know of the picture. */
+static status write_facts(const struct convergence *c)
+{
+  enum { BEHIND_PRECISION = 1000 };
+  const char *scene = c->study.ask.scene, *over = c->over_dt ? "dt" : "spacing";
+  const struct path path = path_of("%s/convergence.figure.json", c->folder.text);
+  const struct path name = path_of("%s-convergence-%s", scene, over);
+  const struct path about = path_of("%s: observed order over %s", scene, over);
+  const struct path command = path_of("convergence %s --over %s", scene, over);
+  const struct path statement = path_of(
+    "%s over %s, means of %ld starts disturbed by up to %g dx (bars: two standard deviations of "
+    "the mean). The legend gives the order by weighted least squares with its interval of 95 %%.",
+    c->over_dt ? "Distance from the reference" : c->study.error,
+    c->over_dt ? "the time step" : "the spacing", c->seeds > 0 ? c->seeds : 1, c->jitter);
+  struct new_file file;
+  json_t *files = json_array();
+  for (int k = 0; k < c->num_curves; k++) {
+    const char *solver = c->study.method[c->curve[k].method].name;
+    const struct path data = data_name(solver, "");
+    json_array_append_new(files,
+                          json_pack("{s:s, s:s, s:[s, s, s, s, s]}", "file", data.text, "series",
+                                    solver, "columns", over, "error", "low", "high", "fitted"));
+  }
+  json_t *facts =
+    json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "name", name.text, "picture",
+              "convergence", "kind", "measured", "about", about.text, "statement", statement.text,
+              "command", command.text, "order", BEHIND_PRECISION, "files", files);
+  status result = facts ? file_begin(&file, path.text) : status_set(ERR_MEMORY, "out of memory");
+  if (result == OK) {
+    json_dumpf(facts, file.stream, JSON_INDENT(1));
+    result = file_commit(&file);
+  }
+  json_decref(facts);
+  return result;
+}
+
 status convergence_draw(const struct convergence *c)
 {
   const struct path data = data_folder(), path = path_of("%s/contents.gp", c->folder.text);
@@ -206,6 +242,7 @@ status convergence_draw(const struct convergence *c)
   if (result != OK) file_discard(&file);
   if (result != OK) return result;
   TRY(file_commit(&file));
+  TRY(write_facts(c));
   TRY(drawing_make(&drawing));
   if (!c->quiet) printf("%s/convergence.png\n%s/convergence.svg\n", c->folder.text, c->folder.text);
   return OK;
