@@ -16,7 +16,7 @@ TINY = ("first-step", "--spacings", "0.03,0.02", "--tolerance-factors", "100,1",
 POINT_KEYS = {"solver", "parameters", "error", "error_kind", "time", "time_low", "time_high",
               "time_coverage", "repetitions", "setup", "pairs", "density_error", "valid", "reason"}
 
-# A variant whose solvers are played. `run` writes what Played.solvers says: a time, and how it ends.
+# A variant whose solvers are played: `run` writes what Played.solvers says, a time and an end.
 STUB = r'''#!/usr/bin/python3
 import json, os, sys
 words = sys.argv[1:]
@@ -33,8 +33,8 @@ elif words[0] == "show" and words[1] in plan["solvers"]:
         row("tolerance", 1e-3), row("max_iterations", 100), row("warm_start", 1)]}))
 elif words[0] == "show":
     error = {"error": "front_error"} if words[1] == "scene" else {}
-    print(json.dumps({"name": words[1], "asks": [], **error, "metrics": ["front_error", "tip_error"],
-        "parameters": [row("spacing", 0.01), row("dt", 0.001), row("t_end", 0.1),
+    print(json.dumps({"name": words[1], "asks": [], **error, "metrics":
+        ["front_error", "tip_error"], "parameters": [row("spacing", 0.01), row("dt", 0.001), row("t_end", 0.1),
                        row("kernel", 0), row("samples", 200)]}))
 else:
     solver = plan["solvers"][value("--solver")]
