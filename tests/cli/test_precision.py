@@ -32,10 +32,12 @@ elif words[0] == "show" and words[1] in plan["solvers"]:
     print(json.dumps({"name": words[1], "parameters": [
         row("tolerance", 1e-3), row("max_iterations", 100), row("warm_start", 1)]}))
 elif words[0] == "show":
-    error = {"error": "front_error"} if words[1] == "scene" else {}
-    print(json.dumps({"name": words[1], "asks": [], **error, "metrics":
-        ["front_error", "tip_error"], "parameters": [row("spacing", 0.01), row("dt", 0.001), row("t_end", 0.1),
-                       row("kernel", 0), row("samples", 200)]}))
+    shown = {"name": words[1], "asks": [], "metrics": ["front_error", "tip_error"]}
+    if words[1] == "scene":
+        shown["error"] = "front_error"
+    shown["parameters"] = [row("spacing", 0.01), row("dt", 0.001), row("t_end", 0.1),
+                           row("kernel", 0), row("samples", 200)]
+    print(json.dumps(shown))
 else:
     solver = plan["solvers"][value("--solver")]
     if solver["how"] == "refuses":
