@@ -43,7 +43,8 @@ static const char usage[] =
   "  --help, --version\n"
   "\n"
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
-  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
+  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped "
+  "(no GPU).\n";
 
 static const char *const verbs[] = {"run",    "show",        "speed",   "list",  "figure",
                                     "report", "doctor",      "compare", "bless", "precision",
