@@ -34,8 +34,9 @@ struct benchmark {
   void (*measure)(void *self, const struct snapshot *now, struct measures *out);
   int projection; /* one projection of v at fixed x, in place of time integration (needs
                      CAN(PROJECT)) */
-  int judged_by; /* METRIC_.. that is the error of a run against the truth. 0: the first one that it
-                    measures and whose name ends in _error. Optional. */
+  /* METRIC_.. that is the error of a run against the truth. 0: of the errors that it measures
+   * trajectory_error, else velocity_error, else the first one. Optional. */
+  int judged_by;
 };
 #define MEASURES(name) (1u << (METRIC_##name % 32))
 
