@@ -21,7 +21,8 @@ static const char usage[] =
   "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--fresh] [--dry-run] [--quiet]\n"
-  "  compare RESULTS BASELINE.json [--junit FILE] [--json FILE]   exit code 1: something got worse\n"
+  "  compare RESULTS BASELINE.json   exit code 1: something got worse\n"
+  "         [--junit FILE] [--json FILE]\n"
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
@@ -43,8 +44,8 @@ static const char usage[] =
   "  --help, --version\n"
   "\n"
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
-  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped "
-  "(no GPU).\n";
+  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
+  "77 skipped (no GPU).\n";
 
 static const char *const verbs[] = {"run",    "show",        "speed",   "list",  "figure",
                                     "report", "doctor",      "compare", "bless", "precision",
