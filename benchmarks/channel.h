@@ -14,7 +14,7 @@ struct channel {
 /* Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214: plates 1 mm apart, nu = 1e-6 m^2/s. */
 static inline void channel_defaults(struct scene_params *common)
 {
-  common->spacing = 5e-5;
+  common->spacing = 2.5e-5;
   common->dt = 2e-3;
   common->t_end = 0.3;
   common->gravity = 0;

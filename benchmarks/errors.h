@@ -46,7 +46,7 @@ static inline double velocity_error(const struct snapshot *now, vector_field *fi
 {
   struct squares s = {0, 0};
   for (int i = 0; i < now->n; i++) {
-    double x[DIM], v[DIM];
+    double x[DIM], v[DIM] = {0};
     place(now, i, x);
     field(truth, x, v);
     for (int d = 0; d < DIM; d++) squares_add(&s, component(now->v, i, d), v[d], 1);

@@ -25,8 +25,10 @@ KEYS = {
 GENERAL = ("gamma_mean", "kinetic_energy", "potential_energy", "total_energy", "linear_momentum",
            "angular_momentum", "density_error_mean", "density_error_max", "volume_change")
 # Where there is nothing to measure: a patch of few particles has none deep inside, and the front
-# has not reached the first measured point.
-MAY_BE_NULL = {"gamma_mean", "front_error"}
+# has not reached the first measured point; nothing has swung yet, the disc has no wave, and the
+# column has not sunk.
+MAY_BE_NULL = {"gamma_mean", "front_error", "period_error", "mode_amplitude", "mode_error",
+               "bulk_modulus"}
 STEPS = 4
 MATRIX = [(dim, precision) for dim in (2, 3) for precision in ("double", "float")]
 
