@@ -77,18 +77,31 @@ static double density(const struct pairs *nb, int i) /* sum_j W_ij */
   return sum;
 }
 
-/* K of the line p = K (rho/rho0 - 1) through 0 that fits the particles which lay at 0.2 .. 0.8 H,
- * with p the weight above each: by least squares. NaN if they are not compressed. */
-static double bulk_modulus(const struct snapshot *now, double g, double H)
+/* Did the particle lie at 0.2 .. 0.8 of the height and out of reach of the side walls, which are
+ * not compressed? */
+static int lay_inside(const struct snapshot *now, const struct box *box, int label)
+{
+  const double part = component(now->x_start, label, DIM - 1) / box->water_height;
+  int inside = part > 0.2 && part < 0.8;
+  for (int d = 0; d < DIM - 1; d++) {
+    const double x = component(now->x_start, label, d), side = d == 0 ? box->length : box->depth;
+    inside = inside && x > now->support && x < side - now->support;
+  }
+  return inside;
+}
+
+/* K of the line p = K (rho/rho0 - 1) through 0 that fits those particles, with p the weight above
+ * each: by least squares. NaN if they are not compressed. */
+static double bulk_modulus(const struct snapshot *now, const struct box *box, double g)
 {
   const struct pairs *nb = now->pairs(now);
   double pressed = 0, all = 0;
   if (!nb) return (double)NAN;
   const double full = full_lattice(&nb->kernel, now->dx);
   for (int i = 0; i < now->n; i++) {
-    const double Y = component(now->x_start, now->id[i], DIM - 1);
-    const double p = now->rho0 * g * (H - Y);
-    if (!(Y > 0.2 * H && Y < 0.8 * H)) continue;
+    const double above = box->water_height - component(now->x_start, now->id[i], DIM - 1);
+    const double p = now->rho0 * g * above;
+    if (!lay_inside(now, box, now->id[i])) continue;
     pressed += p * (density(nb, i) / full - 1);
     all += p * p;
   }
@@ -110,7 +123,7 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, residual_speed, sqrt(v2 / now->n / (g * H)));
   MEASURE(out, settlement, sunk);
   MEASURE(out, settlement_error, fabs(sunk - (K > 0 ? settlement(weight / K) : 0)));
-  MEASURE(out, bulk_modulus, bulk_modulus(now, g, H));
+  MEASURE(out, bulk_modulus, bulk_modulus(now, &s->box, g));
 }
 
 #define METRICS(M, word) \
