@@ -86,7 +86,7 @@ class Drops(cli_case.Case):
         self.assertLess(found["velocity_error"], 0.1)
 
     def test_viscous_flows(self):
-        """Plates and vortices. The viscosity of pairs on a lattice is 15 % short at R = 2.5 dx,
+        """Plates and vortices. The viscosity of pairs on a lattice is a sixth short at R = 2.5 dx,
         which Couette's end state does not see."""
         for solver in "dfsph", "pbf":
             found = self.metrics("couette", solver, "--spacing", 5e-5)
