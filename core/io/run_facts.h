@@ -70,7 +70,8 @@ struct run_facts {
   double energy_growth; /* largest, as it is judged [1]; NaN: not to be told */
   double speed_max;     /* of a particle, at the end of a step [m/s] */
   long steps, particles, walls;
-  double time_end; /* simulated time reached [s] */
+  double period[3]; /* sides of a periodic domain [m], 0 where it is open */
+  double time_end;  /* simulated time reached [s] */
   struct {
     double mean; /* per step */
     long max, total;
