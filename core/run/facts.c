@@ -120,6 +120,6 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
   f->run.judged = run->judge.first;
   f->run.num_judged = run->judge.n;
   f->run.speed_max = run->judge.fastest;
-  f->run.energy_growth = run->judge.has_start ? run->judge.growth : NAN;
+  f->run.energy_growth = run->judge.has_start ? run->judge.growth : (double)NAN;
   end_memory(f, run);
 }
