@@ -122,6 +122,21 @@ static void judge_places(struct run *run, const struct snapshot *now)
   judge(run, CRITERION_LEAK, outside, criteria[CRITERION_LEAK].limit);
 }
 
+/* What could not be measured (NaN) is not judged here: positions are finite. */
+static void judge_density(struct run *run, const struct measures *values)
+{
+  const double most = 1 + values->value[METRIC_density_error_max];
+  if (!isnan(most)) judge(run, CRITERION_DENSITY, most, run->judge.density);
+}
+
+static void judge_volume(struct run *run, int n, const struct measures *values)
+{
+  enum { FEW = 16 }; /* particles that have a shape, but hardly a volume */
+  const double change = fabs(values->value[METRIC_volume_change]);
+  if (isnan(change) || n < FEW || run->scene.num_emitters > 0) return;
+  judge(run, CRITERION_VOLUME, change, criteria[CRITERION_VOLUME].limit);
+}
+
 void judge_sample(struct run *run, const struct snapshot *now, const struct measures *values)
 {
   if (now->n < 1) return;
@@ -130,11 +145,9 @@ void judge_sample(struct run *run, const struct snapshot *now, const struct meas
     return;
   }
   judge_places(run, now);
-  judge(run, CRITERION_DENSITY, 1 + values->value[METRIC_density_error_max], run->judge.density);
+  judge_density(run, values);
   judge_energy(run, values);
-  if (run->scene.num_emitters == 0)
-    judge(run, CRITERION_VOLUME, fabs(values->value[METRIC_volume_change]),
-          criteria[CRITERION_VOLUME].limit);
+  judge_volume(run, now->n, values);
 }
 
 /* --- the end --- */

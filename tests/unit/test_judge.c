@@ -223,6 +223,29 @@ static void density_and_volume_see_what_only_looks_alive(void **unused)
   run_free(run);
 }
 
+/* The volume of what is spread too wide cannot be measured, that of three particles means nothing.
+ */
+static void volume_is_judged_where_there_is_one(void **unused)
+{
+  (void)unused;
+  struct scene wide = block(0, 0, 1, zero()), few = empty_scene(0);
+  vec x = zero();
+  x.c[0] = x.c[1] = 1000;
+  for (int d = 0; d < DIM; d++) wide.high.c[d] = 2000;
+  assert_int_equal(scene_add(&wide, x, zero()), OK);
+  struct run *run = carry_out(NOTHING, &wide, 0);
+  assert_int_equal(run->judge.n, 0);
+  run_free(run);
+  for (int k = 0; k < 3; k++) {
+    x.c[0] = (real)(k * DX);
+    x.c[1] = 0;
+    assert_int_equal(scene_add(&few, x, zero()), OK);
+  }
+  run = carry_out(STRETCH, &few, 0);
+  assert_int_equal(run->judge.n, 0);
+  run_free(run);
+}
+
 /* A start that is denser than twice rho0 is judged by itself. */
 static void a_compressed_start_is_no_failure(void **unused)
 {
@@ -281,6 +304,7 @@ int main(void)
     cmocka_unit_test(speed_ends_the_run),
     cmocka_unit_test(much_outside_is_blow_up_a_little_a_leak),
     cmocka_unit_test(density_and_volume_see_what_only_looks_alive),
+    cmocka_unit_test(volume_is_judged_where_there_is_one),
     cmocka_unit_test(a_compressed_start_is_no_failure),
     cmocka_unit_test(energy_is_judged_where_the_system_is_closed),
     cmocka_unit_test(falling_wins_no_energy),
