@@ -37,6 +37,8 @@ static double psi(const struct cloud *c, double K)
   return total;
 }
 
+static double radius; /* of Chebyshev's iteration; 0: S/(1 + S), at most 0.995 */
+
 /* Psi after so many iterations; S is that of a full lattice, chi 2.33 (2-D) or 3.35 (3-D) */
 static double psi_after(int iterations, double S, int acceleration, int history, int guard)
 {
@@ -48,6 +50,7 @@ static double psi_after(int iterations, double S, int acceleration, int history,
                                      {"acceleration", acceleration},
                                      {"history", history},
                                      {"safeguard", guard},
+                                     {"spectral_radius", radius},
                                      {NULL, 0}};
   if (iterations > 0) cloud_run(&c, &solver_sisph, settings, 1);
   return psi(&c, K);
@@ -119,12 +122,49 @@ static void test_safeguard(void **unused)
     }
 }
 
+/* What so many iterations of Chebyshev's with this radius leave of Psi */
+static double chebyshev_leaves(int iterations, double S, double with_radius)
+{
+  const double least = psi_after(1000, S, ANDERSON, 5, 2), before = psi_after(0, S, PLAIN, 1, 2);
+  radius = with_radius;
+  const double after = psi_after(iterations, S, CHEBYSHEV, 1, 2);
+  radius = 0;
+  return (after - least) / (before - least);
+}
+
+/* Chebyshev's iteration with the paper's radius of 0.9 is made for S = 9 and gets stuck beyond.
+ * With S/(1 + S) it converges at any S, but only once N is above some S/3: with few iterations at
+ * large S 0.9 is ahead. Anderson's is ahead of both. */
+static void test_spectral_radius(void **unused)
+{
+  (void)unused;
+  if (!IS_DOUBLE) skip();
+  static const double S[] = {9, 100, 1000};
+  static const int N[] = {20, 160};
+  double matched[3][2], fixed[3][2];
+  for (int k = 0; k < 3; k++)
+    for (int n = 0; n < 2; n++) {
+      matched[k][n] = chebyshev_leaves(N[n], S[k], 0);
+      fixed[k][n] = chebyshev_leaves(N[n], S[k], 0.9);
+      print_message("S = %4g, N = %3d: S/(1+S) leaves %.1e, 0.9 %.1e\n", S[k], N[n], matched[k][n],
+                    fixed[k][n]);
+    }
+  assert_true(matched[0][0] < 1e-6 && fixed[0][0] < 1e-6);
+  assert_true(matched[1][1] < 1e-12 && fixed[1][1] > 1e-8);
+  assert_true(matched[1][0] > 3 * fixed[1][0] && matched[2][0] > 3 * fixed[2][0]);
+  const double least = psi_after(1000, S[2], ANDERSON, 5, 2), all = psi_after(0, S[2], PLAIN, 1, 2);
+  const double anderson = (psi_after(20, S[2], ANDERSON, 3, 2) - least) / (all - least);
+  print_message("S = %4g, N =  20: Anderson(3) leaves %.1e\n", S[2], anderson);
+  assert_true(anderson < fixed[2][0]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_missing_convergence),
     cmocka_unit_test(test_step_length_stalls),
     cmocka_unit_test(test_safeguard),
+    cmocka_unit_test(test_spectral_radius),
   };
   return cmocka_run_group_tests_name("tried sisph " SPHBENCH_VARIANT, tests, NULL, NULL);
 }
