@@ -39,6 +39,13 @@ struct benchmark {
   int judged_by;
 };
 #define MEASURES(name) (1u << (METRIC_##name % 32))
+/* Both words, from LIST(M, word) = M(word, name) | M(word, name) ...: right wherever a metric
+ * stands in its table. */
+#define MEASURES_IN(word, name) (METRIC_##name / 32 == (word) ? MEASURES(name) : 0u)
+#define MEASURES_OF(LIST)                      \
+  {                                            \
+    LIST(MEASURES_IN, 0), LIST(MEASURES_IN, 1) \
+  }
 
 #define BENCHMARK(name) extern const struct benchmark benchmark_##name;
 #include "../benchmarks/benchmarks.def"

@@ -266,11 +266,19 @@ status run_viscosity(struct run *run)
   return result;
 }
 
+status run_gravity(struct run *run)
+{
+  const struct scene *scene = &run->scene;
+  const enum phase before = clock_enter(PHASE_INTEGRATE);
+  if (inner(scene->gravity, scene->gravity) > 0) physics_gravity(run->view);
+  if (scene->pull != 0) physics_pull(run->view, scene->pull);
+  clock_enter(before);
+  return OK;
+}
+
 status run_forces(struct run *run)
 {
-  const enum phase before = clock_enter(PHASE_INTEGRATE);
-  if (scene_asks(&run->scene) & CAN(GRAVITY)) physics_gravity(run->view);
-  clock_enter(before);
+  TRY(run_gravity(run));
   return run_viscosity(run);
 }
 
