@@ -43,6 +43,7 @@ enum { NONE, MIRRORED };
   P(clamp, BY_DENSITY, 0, 2, "auto|clamped|free", "p >= 0, or any; auto: free by continuity")    \
   P(alpha, 0.01, 0, 10, "1", "Monaghan's artificial viscosity; 0: none")                         \
   P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")  \
+  P(max_substeps, 10000, 1, 1e9, "1", "substeps of a step beyond which the run is given up")     \
   P(cfl, 0.4, 1e-3, 2, "1", "largest substep over h/c, h = R/2")
 
 #define FIELDS(F)                                                                          \
@@ -222,8 +223,12 @@ static status substeps(struct run *run, state *s, int n)
 static status step(struct run *run, void *self)
 {
   state *s = (state *)self;
-  const int n = (int)fmin(fmax(ceil((double)s->dt / max_dt(s)), 1), 1e9);
+  const double wanted = fmax(ceil((double)s->dt / max_dt(s)), 1);
   double error;
+  if (!(wanted <= (double)s->max_substeps))
+    return run_diverged(run, "a step of %g s needs %.3g acoustic substeps, more than max_substeps",
+                        (double)s->dt, wanted);
+  const int n = (int)wanted;
   sweep(no_mean, s);
   TRY(substeps(run, s, n));
   sum_over(conclude, s, s->p.n, &error);
