@@ -22,22 +22,22 @@ set encoding utf8
 # own, told apart by the colour-blind as well (after Okabe and Ito); where two curves coincide, the
 # thin dashed one lies on the wide one. Another form of a solver (a recipe's runs with a label) has
 # the same colour, thin and dotted with an open mark: line type 20 + k.
-array hue[12] = ['#0072b2', '#e69f00', '#d55e00', '#009e73', '#a6266e', '#56b4e9', \
-  '#7a6a00', '#333333', '#882255', '#44aa99', '#6a51a3', '#a6761d']
-array full[12] = [5, 7, 9, 11, 13, 5, 7, 9, 11, 13, 2, 3]
-array open[12] = [4, 6, 8, 10, 12, 4, 6, 8, 10, 12, 2, 3]
+array hue[20] = ['#0072b2', '#e69f00', '#d55e00', '#009e73', '#a6266e', '#56b4e9', \
+  '#7a6a00', '#333333', '#882255', '#44aa99', '#6a51a3', '#a6761d', \
+  '#e377c2', '#00494d', '#9ccb19', '#f06060', '#999999', '#3b2a8c', '#c9a400', '#5f9ea0']
+array full[20] = [5, 7, 9, 11, 13, 5, 7, 9, 11, 13, 2, 3, 15, 1, 15, 2, 3, 15, 1, 3]
+array open[20] = [4, 6, 8, 10, 12, 4, 6, 8, 10, 12, 2, 3, 14, 1, 14, 2, 3, 14, 1, 3]
 do for [k = 1:20] {
-  m = (k - 1) % 12 + 1
   if (k % 3 == 1) {
-    set linetype k linecolor rgb hue[m] linewidth 3.5 pointtype full[m] dashtype solid
+    set linetype k linecolor rgb hue[k] linewidth 3.5 pointtype full[k] dashtype solid
   }
   if (k % 3 == 2) {
-    set linetype k linecolor rgb hue[m] linewidth 2 pointtype full[m] dashtype (9,4)
+    set linetype k linecolor rgb hue[k] linewidth 2 pointtype full[k] dashtype (9,4)
   }
   if (k % 3 == 0) {
-    set linetype k linecolor rgb hue[m] linewidth 2.2 pointtype full[m] dashtype solid
+    set linetype k linecolor rgb hue[k] linewidth 2.2 pointtype full[k] dashtype solid
   }
-  set linetype 20 + k linecolor rgb hue[m] linewidth 1.4 pointtype open[m] dashtype (2,3)
+  set linetype 20 + k linecolor rgb hue[k] linewidth 1.4 pointtype open[k] dashtype (2,3)
 }
 
 # What is measured or exact, not computed by a solver.

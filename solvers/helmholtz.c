@@ -317,7 +317,7 @@ const struct solver solver_helmholtz = {
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
          CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) |
-         CAN(MOVING_WALLS) | CAN(EMITTERS),
+         CAN(MOVING_WALLS) | CAN(EMITTERS) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

@@ -208,7 +208,7 @@ const struct solver solver_iisph = {
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
          CAN(PERIODIC) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) | CAN(MOVING_WALLS) |
-         CAN(BODIES) | CAN(EMITTERS),
+         CAN(BODIES) | CAN(EMITTERS) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

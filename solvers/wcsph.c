@@ -35,7 +35,6 @@
 enum { SUMMED, CONTINUITY };
 enum { BY_DENSITY, CLAMPED, FREE };
 enum { NONE, MIRRORED };
-enum { MOST_SUBSTEPS = 100000 };
 
 #define PARAMS(P)                                                                                \
   P(c, 0, 0, 1e6, "m/s", "speed of sound; 0: 10 times the largest speed that the energy allows") \
@@ -44,6 +43,7 @@ enum { MOST_SUBSTEPS = 100000 };
   P(clamp, BY_DENSITY, 0, 2, "auto|clamped|free", "p >= 0, or any; auto: free by continuity")    \
   P(alpha, 0.01, 0, 10, "1", "Monaghan's artificial viscosity; 0: none")                         \
   P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")  \
+  P(max_substeps, 10000, 1, 1e9, "1", "substeps of a step beyond which the run is given up")     \
   P(cfl, 0.4, 1e-3, 2, "1", "largest substep over h/c, h = R/2")
 
 #define FIELDS(F)                                                                          \
@@ -223,12 +223,12 @@ static status substeps(struct run *run, state *s, int n)
 static status step(struct run *run, void *self)
 {
   state *s = (state *)self;
-  const double needed = fmax(ceil((double)s->dt / max_dt(s)), 1);
-  if (!(needed <= (double)MOST_SUBSTEPS))
-    return run_diverged(run, "sound at %.3g m/s asks for %.3g substeps, at most %d are done",
-                        (double)s->c, needed, MOST_SUBSTEPS);
-  const int n = (int)needed;
+  const double wanted = fmax(ceil((double)s->dt / max_dt(s)), 1);
   double error;
+  if (!(wanted <= (double)s->max_substeps))
+    return run_diverged(run, "a step of %g s needs %.3g acoustic substeps, more than max_substeps",
+                        (double)s->dt, wanted);
+  const int n = (int)wanted;
   sweep(no_mean, s);
   TRY(substeps(run, s, n));
   sum_over(conclude, s, s->p.n, &error);

@@ -12,15 +12,20 @@ STAGE void residual(const struct cg *s, int i)
   s->r[i] = s->b[i] - times_matrix(s, s->x, i);
   s->d[i] = s->r[i] / s->diag[i];
 }
-/* (diag_i - sum_j coef_ij)/diag_i: 0 in every row where a constant costs nothing; rows that stand
- * alone do not matter: q_i = 0 for them, else 1. */
-STAGE real anchor(const struct cg *s, int i)
+/* q_i = 0 for rows that stand alone, else 1 */
+STAGE void couple(const struct cg *s, int i)
 {
   lanes off = NO_LANES;
   for_slots(&s->rows, i, ij) off += kept(s->coef, ij);
-  const real coupled = sum(off);
-  s->q[i] = coupled > 0;
-  return coupled > 0 ? fabs(1 - coupled / s->diag[i]) : 0;
+  s->q[i] = sum(off) > 0;
+}
+/* (diag_i - sum_j coef_ij)/diag_i over the coupled: 0 in every row where a constant costs nothing;
+ * rows beside one that stands alone, as beside a surface, are held by it. */
+STAGE real anchor(const struct cg *s, int i)
+{
+  lanes off = NO_LANES;
+  for_slots(&s->rows, i, ij) off += kept(s->coef, ij) * of(s->q, ij);
+  return s->q[i] > 0 ? fabs(1 - sum(off) / s->diag[i]) : 0;
 }
 STAGE real weight_of(const struct cg *s, int i) { return s->q[i] * s->weight[i]; }
 STAGE real weighted_b(const struct cg *s, int i) { return s->q[i] * s->weight[i] * s->b[i]; }
@@ -32,6 +37,7 @@ static int floats(const struct cg *s)
 {
   const double rounding = sizeof(real) == sizeof(float) ? 1e-5 : 1e-11;
   double most;
+  sweep_over(couple, s, s->n);
   largest_over(anchor, s, s->n, &most);
   return most <= rounding;
 }

@@ -188,7 +188,7 @@ class Scenes(Refusal):
         self.refused("run", self.write(params + box + "domain: {low: [0, 0], high: [0.5, 0.5]}\n"),
                      "--solver", "pbf", says="outside the domain")
         self.refused("run", self.write(params + box + "domain: {low: [0, 0], high: [1, 1], "
-                                       "period: [1, 0]}\n"), "--solver", "dual-sa", says="periodic")
+                                       "period: [1, 0]}\n"), "--solver", "dual-sc", says="periodic")
         low = box.replace("1]}", "0.4]}")
         self.refused("run", self.write(params + low + "domain: {low: [0, 0], high: [1, 0.4], "
                                        "period: [0, 0.4]}\n"), "--solver", "pbf",

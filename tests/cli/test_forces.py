@@ -2,6 +2,7 @@
 """Viscosity, XSPH and surface tension are neither allocated nor computed where a scene asks for
 none of them, and each brings its own only."""
 import re
+import subprocess
 
 import cli_case
 
@@ -36,6 +37,13 @@ class Forces(cli_case.Case):
         absent = set(re.search(r"features absent:([^\n]*)", out)[1].split())
         return fields, stages, absent
 
+    def refuses(self, solver, settings):
+        """Does the compatibility table say that it cannot?"""
+        words = [word for setting in settings for word in ("--set", setting)]
+        done = subprocess.run([cli_case.command(), "run", "rotating-patch", *words, "--solver",
+                               solver, "--dry-run"], capture_output=True, text=True, check=False)
+        return done.returncode == 2 and "which the scene asks" in done.stderr
+
     def test_only_what_is_asked(self):
         for row in self.asked("list", "solvers"):
             solver = row["name"]
@@ -43,11 +51,13 @@ class Forces(cli_case.Case):
             private = {field["name"] for field in self.asked("show", solver)["fields"]}
             for settings, (fields, stages) in ASKED.items():
                 with self.subTest(solver=solver, settings=settings):
+                    if self.refuses(solver, settings):
+                        continue
                     found, ran, absent = self.look(solver, settings)
                     own = fields | (BASE if settings else set())
                     self.assertEqual((found & FIELDS) - private, (plain & BASE | own) - private)
                     self.assertEqual(found - plain, own - plain)
-                    self.assertEqual(ran & STAGES, stages)
+                    self.assertEqual((ran - plain_stages) & STAGES, stages - plain_stages)
                     self.assertLessEqual(plain_stages, ran)
                     for name, key in (("XSPH", "xsph"), ("VISCOSITY", "viscosity="),
                                       ("TENSION", "tension=")):

@@ -53,6 +53,8 @@ MOST_COLUMNS = 100
 COMMENT_OR_STRING = re.compile(
     r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
 DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(\w+)(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+QUOTED = re.compile(r"`[^`\n]*`")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">]', re.MULTILINE)
 
 
@@ -371,8 +373,34 @@ def licences(tree):
                 yield source, source.line(match.start()), f"includes {match.group(2)}"
 
 
+def links(tree):
+    """What README.md and the pages in docs/ link to exists: a file or folder of the tree, and in a
+    page of Markdown the heading that stands behind the #."""
+    link = re.compile(r"\]\(<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\)|(?:src|href)=\"([^\"]+)\"")
+    for source in tree.sources.values():
+        if source.path != "README.md" and not (source.under("docs") and source.suffix == ".md"):
+            continue
+        for match in link.finditer(QUOTED.sub(blank, FENCED.sub(blank, source.text))):
+            where, line = match.group(1) or match.group(2), source.line(match.start())
+            path, _, heading = where.partition("#")
+            if re.match(r"[a-z][a-z0-9+.-]*:", where):
+                continue
+            here = tree.root / source.path
+            target = (here.parent / path).resolve() if path else here
+            if tree.root not in target.parents or not target.exists():
+                yield source, line, f"links to {path}, which is not there"
+            elif heading and target.suffix == ".md" and heading not in anchors(target.read_text()):
+                yield source, line, f"links to {where}, which has no such heading"
+
+
+def anchors(text):
+    """The names by which headings of a page are linked to."""
+    titles = re.findall(r"^#+[ \t]+(.*?)[ \t]*$", FENCED.sub(blank, text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
 RULES = [floors, names, lengths, units, variants, exits, blanks, traces, papers, equations,
-         licences]
+         licences, links]
 
 
 def violations(root):

@@ -66,6 +66,8 @@ CLEAN = {
     "analysis/ode.c": "struct ses" + "sion { int open; };\n",
     "tests/unit/test.c": 'int f(void) { exit(1); return g("first-one"); }\n',
     "tools/run.sh": "#!/bin/sh\n",
+    "README.md": "# A project\n[Runs](docs/run.md#how-it-runs), [C](https://a.org/x), `[c](d)`\n",
+    "docs/run.md": "# Runs\n## How it `runs`\nSee [above](../README.md).\n```\n[a](b)\n```\n",
     "results/runs.csv": "a\tb \n",
     "build/core/base/bad.h": "\t",
 }
@@ -100,9 +102,9 @@ FAULTS = [
     ("exits", "core/io/a.c", "void f(void)\n{\n  exit(2);\n}\n", 3),
     ("exits", "core/run/main.c", "void f(void)\n{\n  abort();\n}\n", 20),
     ("blanks", "core/io/a.c", "int a;\n\tint b;\n", 2),
-    ("blanks", "README.md", "A line \n", 1),
+    ("blanks", "README.md", "A line \n", 3),
     ("blanks", "tools/run.sh", "true", 2),
-    ("traces", "README.md", "See /" + "work/main.\n", 1),
+    ("traces", "README.md", "See /" + "work/main.\n", 3),
     ("traces", "results/run.json", '{"cwd": "/' + 'root"}\n', 1),
     ("traces", "core/io/a.c", "/* this ses" + "sion */\n", 1),
     ("traces", "core/io/a.c", 'open("/' + 'home/ann/a");\n', 1),
@@ -111,6 +113,10 @@ FAULTS = [
     ("equations", "solvers/b.c", "/* moves */\nSTAGE void f(const state *s, int i)\n{\n}\n", 2),
     ("equations", "solvers/b.c", "STAGE real f(const state *s, int i)\n{\n}\n", 1),
     ("licences", "core/linear/a.c", "#include <gsl/gsl_linalg.h>\n", 1),
+    ("links", "README.md", "[Gone](docs/gone.md)\n", 3),
+    ("links", "docs/run.md", "![A picture](picture.png)\n", 7),
+    ("links", "docs/a.md", "\n[Outside](../../outside.md)\n", 2),
+    ("links", "docs/a.md", "[Runs](run.md#no-such-heading)\n", 1),
 ]
 
 

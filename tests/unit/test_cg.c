@@ -84,6 +84,22 @@ static void held_rows_keep_their_mean(void **unused)
   assert_true(fabs(sum_x - sum_b) < 100 * EXACT);
 }
 
+/* A row that stands alone at x = 0 beside the ring, whose neighbour leans on it, holds it. */
+static void a_surface_holds(void **unused)
+{
+  (void)unused;
+  static struct ring g;
+  double sum_b = 0;
+  ring_make(&g, 0);
+  for (int i = 0; i < N; i++) g.b[i] = 1;
+  for (int i = 0; i < N; i++) sum_b += (double)g.weight[i];
+  g.list[g.last[3]] = N;
+  g.coef[g.last[3]++] = 1 / g.weight[3];
+  g.diag[3] = 3 / g.weight[3];
+  assert_true(cg_solve(&g.cg, EXACT / 10, 100).converged);
+  assert_true(fabs((double)g.x[3] - sum_b) < 100 * EXACT);
+}
+
 static void nothing_gives_nothing(void **unused)
 {
   (void)unused;
@@ -100,6 +116,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(constants_cost_nothing),
     cmocka_unit_test(held_rows_keep_their_mean),
+    cmocka_unit_test(a_surface_holds),
     cmocka_unit_test(nothing_gives_nothing),
   };
   return cmocka_run_group_tests_name("cg " SPHBENCH_VARIANT, tests, NULL, NULL);
