@@ -21,6 +21,9 @@ static const char usage[] =
   "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--fresh] [--dry-run] [--quiet]\n"
+  "  stability SCENE           largest stable time step of each solver; why a longer one fails\n"
+  "         [--map KEY=V,V,...] [--seeds N] [--ignore CRITERION,...] [--quick] [--json FILE]\n"
+  "         --extreme [--solvers A,B]   the catalogue of extreme cases\n"
   "  compare RESULTS BASELINE.json   exit code 1: something got worse\n"
   "         [--junit FILE] [--json FILE]\n"
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
@@ -47,10 +50,10 @@ static const char usage[] =
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",        "speed",   "list",  "figure",
-                                    "report", "doctor",      "compare", "bless", "precision",
-                                    "sweep",  "convergence", "profile"};
-static const char *const later[] = {"stability", "claims"};
+static const char *const verbs[] = {"run",    "show",        "speed",   "list",     "figure",
+                                    "report", "doctor",      "compare", "bless",    "precision",
+                                    "sweep",  "convergence", "profile", "stability"};
+static const char *const later[] = {"claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
 
 /* Replace this process by the variant; returns only on failure. */
@@ -113,6 +116,7 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
   if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);
+  if (strcmp(verb, "stability") == 0) return verb_stability(argc, argv);
   if (strcmp(verb, "convergence") == 0) return verb_convergence(argc, argv);
   if (strcmp(verb, "profile") == 0) return verb_profile(argc, argv);
   if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);

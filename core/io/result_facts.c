@@ -165,11 +165,44 @@ static void put_costs(struct h5 *h, const struct run_facts *facts)
   put_facts(h, "/run/memory/fields", facts->memory.num_fields, facts->memory.fields);
 }
 
+/* The criteria that the run came to break, one row each. */
+static void put_judged(struct h5 *h, const struct run_facts *facts)
+{
+  enum { MOST = 16 };
+  const char *words[MOST], *units[MOST];
+  double time[MOST], value[MOST], limit[MOST];
+  const int n = facts->num_judged < MOST ? facts->num_judged : MOST;
+  if (n == 0) return;
+  for (int i = 0; i < n; i++) {
+    const struct judged *j = &facts->judged[i];
+    words[i] = j->criterion;
+    units[i] = j->unit;
+    time[i] = j->time;
+    value[i] = j->value;
+    limit[i] = j->limit;
+  }
+  const struct {
+    struct h5_label label;
+    const double *data;
+  } columns[] = {{{"time", "s", "when it first held"}, time},
+                 {{"value", "see unit", "what was found then"}, value},
+                 {{"limit", "see unit", "what is allowed"}, limit}};
+  const hid_t group = group_at(h, "/run/judged");
+  h5_put_texts(h, group, (struct h5_label){"criterion", "1", "that the run broke"}, n, words);
+  h5_put_texts(h, group, (struct h5_label){"unit", "1", "of value and limit"}, n, units);
+  for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
+    h5_put(
+      h, group, columns[k].label,
+      (struct h5_array){H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, {(hsize_t)n, 0}, columns[k].data});
+  H5Gclose(group);
+}
+
 void result_facts_end(struct h5 *h, const struct run_facts *facts)
 {
   const hid_t run = group_at(h, "/run");
   put_totals(h, run, facts);
   put_costs(h, facts);
+  put_judged(h, facts);
   if (facts->num_metrics) {
     H5Gclose(group_at(h, "/metrics"));
     put_facts(h, "/metrics/final", facts->num_metrics, facts->metrics);

@@ -65,6 +65,18 @@ static json_t *metrics(const struct run_facts *facts)
   return object;
 }
 
+static json_t *judged(const struct run_facts *facts)
+{
+  json_t *list = json_array();
+  for (int i = 0; i < facts->num_judged; i++) {
+    const struct judged *j = &facts->judged[i];
+    json_array_append_new(list, json_pack("{s:s, s:o, s:o, s:o, s:s}", "criterion", j->criterion,
+                                          "time", number(j->time), "value", number(j->value),
+                                          "limit", number(j->limit), "unit", j->unit));
+  }
+  return list;
+}
+
 static json_t *series(const struct fact_table *table)
 {
   json_t *object = json_object();
@@ -128,6 +140,9 @@ static json_t *whole(const struct run_facts *f)
                       json_pack("[f, f, f]", f->period[0], f->period[1], f->period[2]));
   json_object_set_new(object, "parameters", values_of(f->num_parameters, f->parameters));
   json_object_set_new(object, "parameter_units", units_of(f->num_parameters, f->parameters));
+  json_object_set_new(object, "judged", judged(f));
+  json_object_set_new(object, "speed_max", number(f->speed_max));
+  json_object_set_new(object, "energy_growth", number(f->energy_growth));
   json_object_set_new(object, "iterations",
                       json_pack("{s:o, s:I, s:I}", "mean", number(f->iterations.mean), "max",
                                 (json_int_t)f->iterations.max, "total",

@@ -26,6 +26,12 @@ struct fact {
   const char *word; /* NULL: a number */
 };
 
+/* A criterion by which the run means nothing any more, and when it first held. */
+struct judged {
+  const char *criterion, *unit; /* unit: of value and limit */
+  double time, value, limit;    /* [s] */
+};
+
 /* Columns of equal length; the first is the time [s] or, per step, whatever the runner puts first.
  */
 struct fact_column {
@@ -58,7 +64,11 @@ struct run_facts {
   const struct fact *parameters; /* resolved, of scene, solver and run */
   int num_parameters;
   enum run_status status;
-  const char *reason; /* one sentence, NULL when there is nothing to say */
+  const char *reason;          /* one sentence, NULL when there is nothing to say */
+  const struct judged *judged; /* in the order of time */
+  int num_judged;
+  double energy_growth; /* largest, as it is judged [1]; NaN: not to be told */
+  double speed_max;     /* of a particle, at the end of a step [m/s] */
   long steps, particles, walls;
   double period[3]; /* sides of a periodic domain [m], 0 where it is open */
   double time_end;  /* simulated time reached [s] */

@@ -117,5 +117,9 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
   f->run.timing.per_iteration =
     f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
   f->run.pairs_visited = visits_total(run);
+  f->run.judged = run->judge.first;
+  f->run.num_judged = run->judge.n;
+  f->run.speed_max = run->judge.fastest;
+  f->run.energy_growth = run->judge.has_start ? run->judge.growth : (double)NAN;
   end_memory(f, run);
 }

@@ -96,7 +96,9 @@ STAGE real turn_about(const struct carrying *s, int i)
 STAGE real speed2(const struct view *s, int i) { return inner(s->p.v[i], s->p.v[i]); }
 STAGE real position_and_velocity(const struct view *s, int i)
 {
-  return inner(s->p.v[i], s->p.v[i]) + inner(s->p.x[i], s->p.x[i]);
+  real sum = 0; /* no squares: a particle at 1e30 m is somewhere in single precision, too */
+  for (int d = 0; d < DIM; d++) sum += fabs(s->p.x[i].c[d]) + fabs(s->p.v[i].c[d]);
+  return sum;
 }
 
 void physics_move(struct view *s) { sweep(move, s); }

@@ -32,6 +32,7 @@ status record_sample(struct record *r, struct run *run, struct setting *set, str
     metrics_measure(now, &r->last);
     if (set->benchmark && set->benchmark->measure)
       set->benchmark->measure(set->self, now, &r->last);
+    judge_sample(run, now, &r->last);
     long total = 0;
     for (int k = 0; k < run->num_iterations; k++) total += run->iterations[k].total;
     const long steps = run->step - r->steps_counted;

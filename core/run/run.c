@@ -11,8 +11,6 @@
 #include "../backend/backend.h"
 #include "../base/memory.h"
 
-enum { SPEED_MARGIN = 10 }; /* a particle this many times faster than any energy allows: diverged */
-
 unsigned scene_asks(const struct scene *scene)
 {
   unsigned asks = DIM == 2 ? CAN(2D) : CAN(3D);
@@ -248,25 +246,12 @@ static void begin_step(struct run *run)
   if (memory_poisoned()) store_poison(&run->store);
 }
 
-static void check_health(struct run *run)
-{
-  double total, fastest;
-  physics_health(run->view, &total, &fastest);
-  run->not_finite = !isfinite(total);
-  if (run->diverged) return; /* the solver has said why */
-  if (run->not_finite)
-    run_diverged(run, "a position or velocity is not finite");
-  else if (run->speed_limit > 0 && fastest > run->speed_limit)
-    run_diverged(run, "a particle moves at %.3g m/s, %d times what the energy allows", fastest,
-                 SPEED_MARGIN);
-}
-
 static status finish_step(struct run *run, status result)
 {
   TRY(backend_check());
   if (result == ERR_RUN && run->diverged) result = OK;
   run->step++;
-  if (result == OK) check_health(run);
+  if (result == OK) judge_step(run);
   return result;
 }
 

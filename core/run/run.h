@@ -5,11 +5,14 @@
 #include "../solver.h"
 #include "bodies.h"
 #include "forces.h"
+#include "judge.h"
 #include "store.h"
 #include "visits.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { SPEED_MARGIN = 10 }; /* a particle this many times faster than any energy allows: diverged */
 
 /* One named iterative solve of a step ("pressure", "density", ...), summed over the run. */
 struct iterations {
@@ -58,6 +61,7 @@ struct run {
   int not_finite; /* the last step left a position or velocity that is none */
   char reason[256];
   double speed_limit; /* [m/s]; 0: none */
+  struct judge judge;
 };
 
 /* Start `solver` on `scene` (taken over, also on failure) with the solver's parameter values
@@ -104,7 +108,8 @@ void physics_gravity(struct view *view);
 void physics_pull(struct view *view, real pull);
 void physics_density(struct view *view);
 void physics_viscosity(struct view *view);
-/* Sum of |v|^2 + |x|^2 (not finite if any position or velocity is not) and the largest speed [m/s].
+/* Sum of |v| + |x| by components (not finite if any position or velocity is not) and the largest
+ * speed [m/s].
  */
 void physics_health(struct view *view, double *sum, double *fastest);
 

@@ -222,6 +222,7 @@ static status finish(struct session *s, double seconds)
   const struct options *o = s->o;
   const char *reason;
   const enum run_status end = how_it_ended(s, &reason);
+  judge_end(s->run);
   facts_end(&s->facts, &s->plan, run, &s->record, end, reason, seconds);
   if (s->file) {
     struct result_file *file = s->file;
@@ -301,6 +302,8 @@ static status carry_out(struct session *s, int threads)
   if (!s->o->dry_run) TRY(check_outputs(s->o, !set->benchmark));
   TRY(run_create(s->plan.solver, s->plan.solver_values, &set->scene, set->asks, &s->run));
   plan_resolve(&s->plan, s->run);
+  s->run->judge.planned = s->steps;
+  s->run->judge.driven = set->benchmark && set->benchmark->drive;
   if (s->o->dry_run) return dry_run(s);
   TRY(start(s, threads));
   progress_begin(&s->bar, s->o->name, s->o->quiet);
