@@ -55,6 +55,8 @@ enum { SAMPLE_TIME = NUM_METRICS, SAMPLE_ITERATIONS, SAMPLE_RESIDUAL };
 status record_sample(struct record *record, struct run *run, struct setting *setting,
                      struct snapshot *now);
 status record_step(struct record *record, const struct run *run);
+/* Room for so many samples and steps, which are to be filled in. Errors: ERR_MEMORY, ERR_USER. */
+status record_make_room(struct record *record, long rows, long steps);
 void record_free(struct record *record);
 
 /* Replace this process by the executable of the other dimension with the same arguments; returns

@@ -111,10 +111,11 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
   f->run.timing.phases = f->phases;
   f->run.timing.num_phases = NUM_PHASES;
   const double work = seconds - phase[PHASE_METRICS] - phase[PHASE_OUTPUT];
+  const long here = run->step - run->first_step;
   f->run.timing.total = seconds;
-  f->run.timing.per_step = run->step > 0 ? work / (double)run->step : 0;
-  f->run.timing.per_iteration =
-    f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
+  f->run.timing.per_step = here > 0 ? work / (double)here : 0;
+  const long iterations = f->run.iterations.total - run->first_iterations;
+  f->run.timing.per_iteration = iterations > 0 ? phase[PHASE_SOLVER] / (double)iterations : 0;
   f->run.pairs_visited = visits_total(run);
   end_memory(f, run);
 }
