@@ -31,8 +31,10 @@ static const char usage[] =
   "\n"
   "  --help, --version\n"
   "\n"
-  "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
-  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed; 77 skipped (no GPU).\n";
+  "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double;\n"
+  "these, figure, sweep and precision take --plugin PATH: solvers from outside.\n"
+  "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
+  "77 skipped (no GPU).\n";
 
 static const char *const verbs[] = {"run",    "show",    "speed", "list",      "figure", "report",
                                     "doctor", "compare", "bless", "precision", "sweep"};
@@ -103,6 +105,45 @@ static status carry_out(int argc, char **argv)
   return unknown(verb);
 }
 
+/* PATH[,PATH] with folders from the root on: children run elsewhere. */
+static char *absolute(const char *paths)
+{
+  char here[4096], *text = NULL;
+  size_t size = 0;
+  FILE *out = getcwd(here, sizeof here) ? open_memstream(&text, &size) : NULL;
+  for (const char *at = paths; out && *at;) {
+    const size_t length = strcspn(at, ",");
+    fprintf(out, "%s%s%s%.*s", at == paths ? "" : ",", *at == '/' ? "" : here,
+            *at == '/' ? "" : "/", (int)length, at);
+    at += length + (at[length] == ',');
+  }
+  if (out) fclose(out);
+  return text;
+}
+
+/* --plugin PATH of a verb that starts many runs goes to all of them by the environment. */
+static status take_plugin(int *argc, char **argv)
+{
+  static const char *const with_runs[] = {"figure", "sweep", "precision", "list"};
+  int kept = 2, takes = 0;
+  for (int k = 0; k < 4 && *argc > 1; k++) takes |= strcmp(argv[1], with_runs[k]) == 0;
+  for (int i = 2; i < *argc && takes; i++) {
+    const int is_it = strncmp(argv[i], "--plugin", 8) == 0 && (!argv[i][8] || argv[i][8] == '=');
+    if (!is_it) {
+      argv[kept++] = argv[i];
+      continue;
+    }
+    const char *path = argv[i][8] ? argv[i] + 9 : i + 1 < *argc ? argv[++i] : "";
+    if (!*path) return user_error("%s: --plugin needs a value: PATH", argv[1]);
+    char *whole = absolute(path);
+    if (!whole || setenv("SPHBENCH_PLUGIN", whole, 1))
+      return status_set(ERR_MEMORY, "out of memory");
+    free(whole);
+  }
+  if (takes) argv[ *argc = kept] = NULL;
+  return OK;
+}
+
 static int is_help(const char *word)
 {
   return !strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help");
@@ -120,7 +161,8 @@ int main(int argc, char **argv)
     puts("sphbench " SPHBENCH_VERSION);
     return 0;
   }
-  const status result = carry_out(argc, argv);
+  status result = take_plugin(&argc, argv);
+  if (result == OK) result = carry_out(argc, argv);
   if (result != OK) fprintf(stderr, "sphbench: %s\n", status_sentence());
   return status_exit_code(result);
 }

@@ -14,10 +14,15 @@ struct setting {
   unsigned asks;
 };
 
-/* The registries of this executable. */
+/* The registries of this executable: what is built in. */
 extern const struct solver *const solvers[];
 extern const struct benchmark *const benchmarks[];
 extern const int num_solvers, num_benchmarks;
+/* All solvers, those of plug-ins too: behind the others, [solver_count]. */
+int solver_count(void);
+const struct solver *solver_number(int k);
+/* One more, from that file. Errors: ERR_USER when there are too many. */
+status solver_add(const struct solver *solver, const char *file);
 const struct solver *solver_find(const char *name);
 const struct benchmark *benchmark_find(const char *name);
 /* The solver of that name. Errors: ERR_USER with the nearest known one; also for NULL. */

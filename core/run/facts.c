@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../scene/scene_file.h"
+#include "plugins.h"
 
 /* Does this scene report the metric? The general ones always, a scene's own only if it measures
  * them. */
@@ -19,6 +20,7 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
 {
   memset(f, 0, sizeof *f);
   provenance_fill(&f->provenance, threads, o->argc, (const char *const *)o->argv);
+  plugin_report(run->solver, &f->provenance);
   f->run.provenance = &f->provenance;
   f->run.scene = plan->setting.benchmark ? o->name : scene_file_name(plan->setting.file);
   f->run.solver = run->solver->name;

@@ -23,6 +23,7 @@ enum { FOR_RUN = 1, FOR_SPEED = 2, FOR_LISTS = 4, FOR_MANY = FOR_RUN | FOR_SPEED
   O(checkpoint, "--checkpoint", "S", FOR_RUN, "write FILE.restart every S seconds of wall time") \
   O(restart, "--restart", "FILE", FOR_RUN, "go on from such a file, with the same arguments")    \
   O(json, "--json", "FILE", FOR_ALL, "the facts as JSON; - for standard output")                 \
+  O(plugin, "--plugin", "PATH", FOR_ALL, "solvers from outside (docs/plug-ins.md)")              \
   O(particles, "--particles", "N", FOR_SPEED, "about so many particles")
 
 /* O(member, flag, verbs, meaning) */
