@@ -41,7 +41,8 @@ install(FILES ${CMAKE_BINARY_DIR}/package/sphbench.pc
 
 set(CPACK_PACKAGE_NAME sphbench)
 set(CPACK_PACKAGE_CONTACT "the sphbench maintainers <maintainers@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "compares pressure solvers for smoothed particle hydrodynamics")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY
+  "compares pressure solvers for smoothed particle hydrodynamics")
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -161,11 +161,15 @@ static status identify(struct run *run, const char *scene)
   return OK;
 }
 
-/* Does what the journal says still hold? A run that was stopped at a limit may do with a longer
- * one. */
+/* Does what the journal says still hold? A run that was stopped at a limit may do with a longer or
+ * larger one. */
 static int is_whole(const struct queue *queue, const struct journal_entry *entry)
 {
   if (entry->outcome == OUTCOME_TIMEOUT) return queue->limit > 0 && entry->seconds >= queue->limit;
+  long had;
+  if (entry->outcome == OUTCOME_OOM)
+    return queue->memory > 0 && sscanf(entry->reason, OOM_REASON, &had) == 1 &&
+           had >= queue->memory;
   if (entry->outcome != OUTCOME_OK && entry->outcome != OUTCOME_DIVERGED) return 1;
   const struct path json = run_file(queue->results, entry->id, "json");
   const struct path frames = run_file(queue->results, entry->id, "vtkhdf");
