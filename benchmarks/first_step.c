@@ -97,4 +97,5 @@ const struct benchmark benchmark_first_step = {
   .drive = NULL,
   .measure = measure,
   .projection = 1,
+  .judged_by = METRIC_pressure_error,
 };

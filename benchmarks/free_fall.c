@@ -89,5 +89,4 @@ const struct benchmark benchmark_free_fall = {
   .drive = NULL,
   .measure = measure,
   .projection = 0,
-  .judged_by = METRIC_trajectory_error,
 };

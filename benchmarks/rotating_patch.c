@@ -11,23 +11,18 @@
 
 #include "../analysis/truth.h"
 #include "../core/scene/places.h"
+#include "errors.h"
 #include "patch.h"
 
 #define PARAMS(P)                                                         \
   P(side, 0.24, 1e-6, 1e6, "m", "side of the square, to whole particles") \
   P(omega, 2.0943951023931953, 1e-6, 1e6, "rad/s", "angular velocity, 2 pi/3")
 
-/* Relative RMS error of a quantity over time, each sample standing for the time since the one
- * before. */
-struct over_time {
-  double error, truth;
-};
-
 typedef struct {
   PARAMS(PARAM_MEMBER)
-  double length; /* the side as filled [m] */
-  double time;   /* of the last sample [s] */
-  struct over_time centre, mid_edge, tip;
+  double length;                        /* the side as filled [m] */
+  double time;                          /* of the last sample [s] */
+  struct squares centre, mid_edge, tip; /* of all samples so far */
 } state;
 
 static void defaults(struct scene_params *common)
@@ -43,7 +38,7 @@ static status build(struct scene *scene, void *self)
   state *s = (state *)self;
   s->length = patch_side((double)s->side, scene->common.spacing);
   s->time = 0;
-  s->centre = s->mid_edge = s->tip = (struct over_time){0, 0};
+  s->centre = s->mid_edge = s->tip = (struct squares){0, 0};
   TRY(patch_fill(scene, (double)s->side, (double)s->omega, 0));
   /* nothing of the exact flow is farther from the centre than a corner that flies straight on */
   const double turns = (double)s->omega * scene->common.t_end;
@@ -51,18 +46,9 @@ static status build(struct scene *scene, void *self)
   return OK;
 }
 
-static double over_time(struct over_time *t, double found, double truth, double interval)
-{
-  if (!isnan(truth) && interval > 0) {
-    t->error += (found - truth) * (found - truth) * interval;
-    t->truth += truth * truth * interval;
-  }
-  return t->truth > 0 ? sqrt(t->error / t->truth) : (double)NAN;
-}
-
 /* Mean over the support around the centre, weighted by the cubic spline; 0, as outside the fluid,
  * where nothing is. */
-static double centre_pressure(const struct snapshot *now)
+static double pressure_at_centre(const struct snapshot *now)
 {
   const struct kernel kernel = kernel_make(KERNEL_CUBIC, (real)now->support, 2);
   double sum = 0, weight = 0;
@@ -138,12 +124,14 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   const double interval = now->time - s->time, pressure = now->rho0 * omega * omega * L * L;
   s->time = now->time;
   if (now->p)
-    MEASURE(
-      out, centre_pressure_error,
-      over_time(&s->centre, centre_pressure(now), pressure * truth_patch_centre(turned), interval));
-  MEASURE(out, mid_edge_error,
-          over_time(&s->mid_edge, mid_edge(now), L * truth_patch_mid_edge(turned), interval));
-  MEASURE(out, tip_error, over_time(&s->tip, tip(now), L * truth_patch_tip(turned), interval));
+    MEASURE(out, centre_pressure_error,
+            squares_over_time(&s->centre, pressure_at_centre(now),
+                              pressure * truth_patch_centre(turned), interval));
+  MEASURE(
+    out, mid_edge_error,
+    squares_over_time(&s->mid_edge, mid_edge(now), L * truth_patch_mid_edge(turned), interval));
+  MEASURE(out, tip_error,
+          squares_over_time(&s->tip, tip(now), L * truth_patch_tip(turned), interval));
 }
 
 static const struct param params[] = PARAM_TABLE(PARAMS);

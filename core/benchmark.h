@@ -35,10 +35,18 @@ struct benchmark {
   void (*measure)(void *self, const struct snapshot *now, struct measures *out);
   int projection; /* one projection of v at fixed x, in place of time integration (needs
                      CAN(PROJECT)) */
-  int judged_by; /* METRIC_.. that is the error of a run against the truth. 0: the first one that it
-                    measures and whose name ends in _error. Optional. */
+  /* METRIC_.. that is the error of a run against the truth. 0: of the errors that it measures
+   * trajectory_error, else velocity_error, else the first one. Optional. */
+  int judged_by;
 };
 #define MEASURES(name) (1u << (METRIC_##name % 32))
+/* Both words, from LIST(M, word) = M(word, name) | M(word, name) ...: right wherever a metric
+ * stands in its table. */
+#define MEASURES_IN(word, name) (METRIC_##name / 32 == (word) ? MEASURES(name) : 0u)
+#define MEASURES_OF(LIST)                      \
+  {                                            \
+    LIST(MEASURES_IN, 0), LIST(MEASURES_IN, 1) \
+  }
 
 #define BENCHMARK(name) extern const struct benchmark benchmark_##name;
 #include "../benchmarks/benchmarks.def"

@@ -52,6 +52,7 @@ struct run; /* owns particles, pair lists, clocks, results; opaque to solvers */
   real dx;          /* particle spacing [m] */                                            \
   real mass;        /* of a particle in a full lattice of density rho0 [kg, 2-D: kg/m] */ \
   real xsph;        /* XSPH coefficient per step [1] */                                   \
+  real sigma;       /* surface tension [N/m] */                                           \
   vec gravity       /* body force [m/s^2] */
 struct view {
   VIEW;
@@ -115,11 +116,12 @@ status run_neighbours(struct run *run);
  * they are needed (p.V); once per step and sort. */
 status run_density(struct run *run);
 
-/* v += dt gravity, then what the scene asks of surface tension, XSPH (v_i += xsph sum_j V_ij (v_j -
- * v_i) W_ij over the fluid) and viscosity, in this order. */
+/* v += dt (gravity - pull x), then what the scene asks of surface tension, XSPH (v_i += xsph sum_j
+ * V_ij (v_j - v_i) W_ij over the fluid) and viscosity, in this order. */
 status run_forces(struct run *run);
-/* All but gravity (for methods that apply it after the correction). Nothing where the scene asks
- * for none. */
+/* The first part alone (for methods that apply the others after the correction). */
+status run_gravity(struct run *run);
+/* All but that part (likewise). Nothing where the scene asks for none. */
 status run_viscosity(struct run *run);
 
 /* Record that an iterative solve named `what` ("pressure", "divergence") took `count` iterations

@@ -3,19 +3,15 @@
 # (file of the front) and label_cost, and loads this.
 #
 # Failed runs have neither error nor cost: they stand in the margin at the top, one cross each.
-width = 1000; height = 640
+width = 1080; height = 620
 load shared.'style.gp'
 set logscale xy
 set format y '%g'
 set format x '%g'
 set xlabel label_cost
 set ylabel label_error noenhanced
-# a tic at every power of ten is too few where there are hardly two of them
-more(low, high, e) = high/low < 200 && e >= floor(log10(low)) - 1 && e <= log10(high) + 1
-do for [e = -20:20] {
-  if (more(error_low, error_high, e)) { set ytics add (2.*10**e, 5.*10**e) }
-  if (more(cost_low, cost_high, e)) { set xtics add (2.*10**e, 5.*10**e) }
-}
+x_low = cost_low; x_high = cost_high; y_low = error_low; y_high = error_high
+load shared.'log-tics.gp'
 set title scene noenhanced
 set key outside right top vertical Left reverse
 set xrange [cost_low/1.3:cost_high*1.3]
@@ -38,16 +34,18 @@ set x2range [0:1]
 set y2range [0:1]
 place(i) = 0.08 + 0.91*(i - 0.5)/num_failed
 some = ''; fronts = ''
+s(i) = i > words(some) ? 1 : int(word(some, i)) # also asked where there is none
+f(i) = i > words(fronts) ? 1 : int(word(fronts, i))
 do for [k = 1:n] {
   if (file[k] ne '') { some = some.sprintf(' %d', k) }
   if (chosen(k) ne '') { fronts = fronts.sprintf(' %d', k) }
 }
-plot for [k in some] file[int(k)] using cost:4 with points linetype colour[int(k)] \
+plot for [i = 1:words(some)] file[s(i)] using cost:4 with points linetype colour[s(i)] \
     pointsize 0.5 notitle, \
-  for [k in fronts] chosen(int(k)) using cost:4 with linespoints linetype colour[int(k)] \
+  for [i = 1:words(fronts)] chosen(f(i)) using cost:4 with linespoints linetype colour[f(i)] \
     pointsize 1 notitle, \
-  for [k in fronts] chosen(int(k)) using cost:4:bar_low:bar_high with xerrorbars \
-    linetype colour[int(k)] linewidth 1 dashtype solid pointsize 0 notitle, \
+  for [i = 1:words(fronts)] chosen(f(i)) using cost:4:bar_low:bar_high with xerrorbars \
+    linetype colour[f(i)] linewidth 1 dashtype solid pointsize 0 notitle, \
   for [k = 1:n] keyentry with linespoints linetype colour[k] title title[k], \
   for [k = 1:(num_failed > 0)] 'failed.dat' using (place($1)):(0.965):2 axes x2y2 with points \
     pointtype 2 pointsize 0.9 linewidth 2 linecolor variable notitle

@@ -195,22 +195,23 @@ static const struct param params[] = PARAM_TABLE(PARAMS), params_sc[] = PARAM_TA
 static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD_TABLE(FIELDS_SB),
                           fields_sc[] = FIELD_TABLE(FIELDS_PLACED);
 
-#define STRATEGY(label, text, the_params, the_fields, the_step, the_project)             \
-  {                                                                                      \
-    .abi = SOLVER_ABI, .name = label, .about = text,                                     \
-    .paper = "Liu, He, Guo, Chang & Wang 2024, ACM Trans. Graph. 43(3), 28",             \
-    .doi = "10.1145/3649888", .differences = DIFFERENCES, .needs = NEEDS, .can = DOES,   \
-    .params = the_params, .num_params = COUNT(the_params), .fields = the_fields,         \
-    .num_fields = COUNT(the_fields), .state_size = sizeof(state), .start = start,        \
-    .step = the_step, .project = the_project, .max_dt = NULL, .uses = uses, .stop = NULL \
+#define STRATEGY(label, text, also_can, the_params, the_fields, the_step, the_project)      \
+  {                                                                                         \
+    .abi = SOLVER_ABI, .name = label, .about = text,                                        \
+    .paper = "Liu, He, Guo, Chang & Wang 2024, ACM Trans. Graph. 43(3), 28",                \
+    .doi = "10.1145/3649888", .differences = DIFFERENCES, .needs = NEEDS,                   \
+    .can = DOES | (also_can), .params = the_params, .num_params = COUNT(the_params),        \
+    .fields = the_fields, .num_fields = COUNT(the_fields), .state_size = sizeof(state),     \
+    .start = start, .step = the_step, .project = the_project, .max_dt = NULL, .uses = uses, \
+    .stop = NULL                                                                            \
   }
 
 const struct solver solver_dual_sa =
   STRATEGY("dual-sa", "ISPH: pressures on the particles themselves (dual-particle strategy S.A)",
-           params, fields_sa, step_sa, project_sa);
+           CAN(PERIODIC) | CAN(ISOTROPIC), params, fields_sa, step_sa, project_sa);
 const struct solver solver_dual_sb =
   STRATEGY("dual-sb", "pressures on copies evened out by PBF shifting (dual-particle strategy S.B)",
-           params, fields_sb, step_sb, project_sb);
+           CAN(ISOTROPIC), params, fields_sb, step_sb, project_sb);
 const struct solver solver_dual_sc = STRATEGY(
-  "dual-sc", "pressures on the nodes of a grid near the particles (dual-particle strategy S.C)",
+  "dual-sc", "pressures on the nodes of a grid near the particles (dual-particle strategy S.C)", 0u,
   params_sc, fields_sc, step_sc, project_sc);

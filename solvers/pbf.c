@@ -49,9 +49,6 @@ typedef struct {
 /* lambda_i = 0, for walls for good */
 STAGE void no_multiplier(const state *s, int i) { s->lambda[i] = 0; }
 
-/* Alg. 1, line 2   v_i = v_i + dt f_ext */
-STAGE void apply_forces(const state *s, int i) { s->p.v[i] = madd(s->p.v[i], s->dt, s->gravity); }
-
 /* p_i = 0 before the iterations */
 STAGE void no_pressure(const state *s, int i) { s->p.p[i] = 0; }
 
@@ -124,7 +121,7 @@ static status keep_density(struct run *run, state *s)
 static status step(struct run *run, void *self)
 {
   state *s = (state *)self;
-  sweep(apply_forces, s);
+  TRY(run_gravity(run)); /* line 2   v_i = v_i + dt f_ext */
   TRY(run_move(run));
   TRY(run_neighbours(run));
   TRY(keep_density(run, s));

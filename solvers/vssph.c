@@ -360,7 +360,7 @@ const struct solver solver_vssph = {
   .differences = DIFFERENCES,
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(p) | HAS(normal),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
-         CAN(PROJECT) | CAN(ISOTROPIC) | CAN(VISCOSITY) | CAN(TENSION),
+         CAN(PROJECT) | CAN(PERIODIC) | CAN(ISOTROPIC) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,

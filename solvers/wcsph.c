@@ -28,7 +28,7 @@
   "walls: particles of mass m, in the density, without pressure, or with their neighbour's; "      \
   "Monaghan repels by forces along the distance\n"                                                 \
   "artificial viscosity: between fluid particles only (walls are free slip)\n"                     \
-  "XSPH: the scene's, which changes velocities; its coefficient is divided by the substeps\n"      \
+  "XSPH: the scene's, which changes velocities; a substep has its part of the coefficient\n"       \
   "several fluids: of equal bulk modulus, so that the speed of sound is c sqrt(light_i)\n"         \
   "no surface tension"
 
@@ -96,7 +96,8 @@ static void find_drift(state *s)
   }
 }
 
-/* The speed that no particle will exceed, by its energy [m/s]. */
+/* The speed that no particle will exceed, by its energy [m/s]: what it has, what gravity can give,
+ * and what surface tension gives to the smallest drop, p = sigma/dx = rho0 v^2/2. */
 static double fastest_speed(state *s)
 {
   double most, of_walls = 0;
@@ -105,7 +106,8 @@ static double fastest_speed(state *s)
   s->deepest = (real)most;
   largest_over(energy, s, s->p.n, &most);
   if (s->p.n_all > s->p.n) largest_over(wall_energy, s, s->p.n_all - s->p.n, &of_walls);
-  return sqrt(fmax(fmax(most, of_walls), 0));
+  const double of_drops = 2 * (double)(s->sigma / (s->rho0 * s->dx));
+  return sqrt(fmax(fmax(most, of_walls), 0) + of_drops);
 }
 
 /* The longest substep [s]: cfl h/(c (1 + 0.6 alpha)), Monaghan 1992, Annu. Rev. Astron. Astrophys.
@@ -208,14 +210,12 @@ STAGE real conclude(const state *s, int i)
 
 static status substeps(struct run *run, state *s, int n)
 {
-  const real dt = s->dt, xsph = s->xsph;
+  const real dt = s->dt;
   status result = OK;
   s->part = 1 / (real)n;
   s->dt = dt * s->part;
-  s->xsph = xsph * s->part;
   for (int k = 0; k < n && result == OK; k++) result = substep(run, s);
   s->dt = dt;
-  s->xsph = xsph;
   return result;
 }
 

@@ -6,6 +6,8 @@
 status verb_figure(int argc, char **argv);
 status verb_report(int argc, char **argv);
 status verb_precision(int argc, char **argv);
+status verb_convergence(int argc, char **argv);
+status verb_profile(int argc, char **argv);
 status verb_doctor(int argc, char **argv);
 status verb_compare(int argc, char **argv);
 status verb_sweep(int argc, char **argv);

@@ -22,25 +22,37 @@ static const char usage[] =
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--memory MIB] [--fresh] [--dry-run]\n"
   "         [--quiet]\n"
-  "  compare RESULTS BASELINE.json [--junit FILE] [--json FILE]\n"
-  "         exit code 1: something got worse\n"
+  "  compare RESULTS BASELINE.json   exit code 1: something got worse\n"
+  "         [--junit FILE] [--json FILE]\n"
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
   "  show NAME [--json]        a solver, scene, metric or figure\n"
   "  speed [--json FILE]       time per particle of search, iteration and step\n"
+  "  precision SCENE           error against run time, with figures and a table;\n"
+  "         [--quick] [--solvers A,B] [--aa] [--kind total|spatial|temporal|algebraic]\n"
+  "         [--error METRIC]\n"
+  "         [--spacings A,B] [--dt-factors A,B] [--tolerance-factors A,B] [--t-end S]\n"
+  "         [--set KEY=VALUE]... [--dim 2|3] [--precision float|double] [--backend B]\n"
+  "         [--repeat N] [--threads N] [--timeout S] [--budget S] [--jobs N] [--fresh]\n"
+  "         [--results DIR] [--json FILE] [--quiet]\n"
+  "  convergence SCENE         observed orders, with intervals\n"
+  "         [--over spacing|dt] [--seeds N] [--jitter DX] and most flags of precision\n"
+  "  profile FILE...           performance and data profiles over precision.json files\n"
+  "         [-o DIR] [--json FILE] [--quiet]\n"
   "  doctor                    what is installed and built; cores, load, noise of the clock\n"
   "\n"
   "  --help, --version\n"
   "\n"
   "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double;\n"
-  "these, figure, sweep and precision take --plugin PATH: solvers from outside.\n"
+  "these, figure, sweep, precision and convergence take --plugin PATH: solvers from outside.\n"
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",    "speed", "list",      "figure", "report",
-                                    "doctor", "compare", "bless", "precision", "sweep"};
-static const char *const later[] = {"stability", "convergence", "claims"};
+static const char *const verbs[] = {"run",    "show",        "speed",   "list",  "figure",
+                                    "report", "doctor",      "compare", "bless", "precision",
+                                    "sweep",  "convergence", "profile"};
+static const char *const later[] = {"stability", "claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
 
 /* Replace this process by the variant; returns only on failure. */
@@ -103,6 +115,8 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
   if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);
+  if (strcmp(verb, "convergence") == 0) return verb_convergence(argc, argv);
+  if (strcmp(verb, "profile") == 0) return verb_profile(argc, argv);
   if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);
   return unknown(verb);
 }
@@ -126,9 +140,10 @@ static char *absolute(const char *paths)
 /* --plugin PATH of a verb that starts many runs goes to all of them by the environment. */
 static status take_plugin(int *argc, char **argv)
 {
-  static const char *const with_runs[] = {"figure", "sweep", "precision", "list"};
+  static const char *const with_runs[] = {"figure", "sweep", "precision", "convergence", "list"};
   int kept = 2, takes = 0;
-  for (int k = 0; k < 4 && *argc > 1; k++) takes |= strcmp(argv[1], with_runs[k]) == 0;
+  enum { NUM_WITH_RUNS = sizeof with_runs / sizeof *with_runs };
+  for (int k = 0; k<NUM_WITH_RUNS && * argc> 1; k++) takes |= strcmp(argv[1], with_runs[k]) == 0;
   for (int i = 2; i < *argc && takes; i++) {
     const int is_it = strncmp(argv[i], "--plugin", 8) == 0 && (!argv[i][8] || argv[i][8] == '=');
     if (!is_it) {

@@ -90,6 +90,8 @@ status order_fit(const struct level *levels, int n, double r, struct order *fit)
     if (!(r > 0) || fabs(next - p) < 1e-13) break;
     p = (p + next) / 2; /* the slope falls as p rises */
   }
+  if (r > 0 && p < 1.01 * LOWEST_ORDER)
+    return user_error("the error hardly falls with the step: the order is below %g", LOWEST_ORDER);
   const double half = gsl_cdf_tdist_Pinv(0.975, fit->n - 2) * line.slope_sd;
   fit->order = line.slope;
   fit->low = line.slope - half;

@@ -20,7 +20,8 @@ struct order {
  * weights are 1/sd^2 where all levels have an sd, else equal; the scatter about the line sets the
  * interval, but where there are sds it is never narrower than they make it. h_reference > 0: the
  * error is the distance from the result at that h, so C (h^p - h_reference^p) is fitted. ERR_USER:
- * fewer than 3 levels with an error; built without GSL. */
+ * fewer than 3 levels with an error; an error against a reference that hardly falls; built without
+ * GSL. */
 status order_fit(const struct level *levels, int n, double h_reference, struct order *fit);
 
 /* The order between two levels alone; NaN where they have none. */

@@ -16,51 +16,26 @@ struct typed {
   int aa, fresh, quiet;
 };
 
-/* --set may be given several times. */
-static status collect_sets(struct study_request *ask, int argc, char **argv)
-{
-  for (int i = 2; i < argc; i++) {
-    const char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
-                        : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
-                                                                        : NULL;
-    if (!value) continue;
-    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
-    if (ask->num_sets == MOST_SETS) return user_error("--set: more than %d of them", MOST_SETS);
-    ask->set[ask->num_sets++] = (char *)value;
-  }
-  return OK;
-}
-
 static status parse(struct typed *t, int argc, char **argv)
 {
   const struct flag flags[] = {
-    {"--solvers", &t->ask.solvers, NULL},
-    {"--results", &t->ask.results, NULL},
-    {"--dim", &t->ask.dim, NULL},
-    {"--precision", &t->ask.precision, NULL},
-    {"--backend", &t->ask.backend, NULL},
-    {"--t-end", &t->t_end, NULL},
-    {"--set", &t->unused, NULL},
-    {"--spacings", &t->spacings, NULL},
-    {"--dt-factors", &t->dts, NULL},
-    {"--tolerance-factors", &t->tolerances, NULL},
-    {"--kind", &t->kind, NULL},
-    {"--repeat", &t->repeat, NULL},
-    {"--threads", &t->threads, NULL},
-    {"--timeout", &t->timeout, NULL},
-    {"--budget", &t->budget, NULL},
-    {"--jobs", &t->jobs, NULL},
-    {"--json", &t->json, NULL},
-    {"--quick", NULL, &t->ask.quick},
-    {"--aa", NULL, &t->aa},
-    {"--fresh", NULL, &t->fresh},
-    {"--quiet", NULL, &t->quiet},
+    {"--solvers", &t->ask.solvers, NULL}, {"--results", &t->ask.results, NULL},
+    {"--dim", &t->ask.dim, NULL},         {"--precision", &t->ask.precision, NULL},
+    {"--backend", &t->ask.backend, NULL}, {"--t-end", &t->t_end, NULL},
+    {"--set", &t->unused, NULL},          {"--spacings", &t->spacings, NULL},
+    {"--dt-factors", &t->dts, NULL},      {"--tolerance-factors", &t->tolerances, NULL},
+    {"--kind", &t->kind, NULL},           {"--error", &t->ask.error, NULL},
+    {"--repeat", &t->repeat, NULL},       {"--threads", &t->threads, NULL},
+    {"--timeout", &t->timeout, NULL},     {"--budget", &t->budget, NULL},
+    {"--jobs", &t->jobs, NULL},           {"--json", &t->json, NULL},
+    {"--quick", NULL, &t->ask.quick},     {"--aa", NULL, &t->aa},
+    {"--fresh", NULL, &t->fresh},         {"--quiet", NULL, &t->quiet},
   };
   const struct arguments what = {"precision",   flags, sizeof flags / sizeof *flags,
                                  &t->ask.scene, 1,     NULL};
   *t = (struct typed){.ask = {.verb = "precision", .results = "results"}};
   TRY(arguments_parse(&what, argc, argv));
-  return collect_sets(&t->ask, argc, argv);
+  return study_sets(&t->ask, argc, argv);
 }
 
 static status choose_kind(const char *word, enum kind *kind)
@@ -74,16 +49,6 @@ static status choose_kind(const char *word, enum kind *kind)
   return word ? user_error("--kind: '%s' found, allowed is total, spatial, temporal or algebraic",
                            word)
               : OK;
-}
-
-static status positive(const char *flag, const char *text, double *value)
-{
-  struct values one;
-  if (!text) return OK;
-  TRY(values_parse(flag, text, &one));
-  if (one.n != 1) return user_error("%s: '%s' found, one number expected", flag, text);
-  *value = one.value[0];
-  return OK;
 }
 
 /* Numbers that need no scene to be checked. */
@@ -102,8 +67,8 @@ static status take_numbers(struct typed *t, struct precision *p, double *timeout
   TRY(argument_whole("--repeat", t->repeat, 5, 250, &p->repeat));
   TRY(argument_whole("--threads", t->threads, 1, 1024, &p->threads));
   TRY(argument_whole("--jobs", t->jobs, 1, 256, jobs));
-  TRY(positive("--timeout", t->timeout, timeout));
-  return positive("--budget", t->budget, &p->budget);
+  TRY(value_parse("--timeout", t->timeout, timeout));
+  return value_parse("--budget", t->budget, &p->budget);
 }
 
 static status take_sweep(const struct typed *t, struct sweep_plan *plan)
@@ -111,7 +76,7 @@ static status take_sweep(const struct typed *t, struct sweep_plan *plan)
   TRY(values_parse("--spacings", t->spacings, &plan->spacing));
   TRY(values_parse("--dt-factors", t->dts, &plan->dt));
   TRY(values_parse("--tolerance-factors", t->tolerances, &plan->tolerance));
-  return positive("--t-end", t->t_end, &plan->t_end);
+  return value_parse("--t-end", t->t_end, &plan->t_end);
 }
 
 /* A limit for each untimed run, such that all of them fit into less than half the budget even if
@@ -144,12 +109,28 @@ static void say_counts(const struct precision *p)
     if (p->study.method[k].refusal) printf("  not run: %s\n", p->study.method[k].refusal);
 }
 
+static int fails_alike(const struct point *a, const struct point *b)
+{
+  return a->knobs.method == b->knobs.method && a->reason && b->reason &&
+         strcmp(a->reason, b->reason) == 0;
+}
+
+/* A line for each solver and reason. */
 static void say_failures(const struct precision *p)
 {
-  for (int k = 0; k < p->n; k++)
-    if (p->point[k].reason)
-      printf("  failed: %s (%s): %s\n", point_solver(p, &p->point[k]),
-             point_words(p, &p->point[k]).text, p->point[k].reason);
+  for (int k = 0; k < p->n; k++) {
+    const struct point *point = &p->point[k];
+    int before = 0, more = 0;
+    for (int i = 0; i < p->n && point->reason; i++) {
+      before += i < k && fails_alike(&p->point[i], point);
+      more += i > k && fails_alike(&p->point[i], point);
+    }
+    if (!point->reason || before) continue;
+    printf("  failed: %s (%s%s", point_solver(p, point), point_words(p, point).text,
+           more ? "" : ")");
+    if (more) printf(", and %d more)", more);
+    printf(": %s\n", point->reason);
+  }
 }
 
 static void say_line(const struct precision *p, const struct candidate *best, int n)

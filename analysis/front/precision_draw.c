@@ -117,6 +117,14 @@ static int count(const struct precision *p, int method, int valid)
   return n;
 }
 
+static int count_exact(const struct precision *p, int method)
+{
+  int n = 0;
+  for (int k = 0; k < p->n; k++)
+    n += p->point[k].knobs.method == method && !p->point[k].reason && p->point[k].error == 0;
+  return n;
+}
+
 /* Failed runs have neither time nor error: they are drawn in the margin, one mark each, solver
  * after solver. */
 static status write_failed(const struct precision *p, int *total)
@@ -176,8 +184,10 @@ static status write_method(const struct precision *p, int m, int number, FILE *c
   static const char *const arrays[NUM_BLOCKS] = {"file", "front", "pairs_front"};
   const int valid = count(p, m, 1), invalid = count(p, m, 0);
   const char *name = p->study.method[m].name;
-  const struct path title =
+  struct path title =
     invalid ? path_of("%s (%d of %d failed)", name, invalid, valid + invalid) : path_of("%s", name);
+  const int exact = count_exact(p, m); /* has no place on a logarithmic axis */
+  if (exact) title = path_of("%s (%d have no error)", title.text, exact);
   for (int block = 0; block < NUM_BLOCKS; block++) {
     const struct path file = data_name(name, block_suffix[block]);
     int n;
@@ -222,20 +232,27 @@ static status write_data(const struct precision *p, json_t *files)
 }
 
 /* What the report wants to know of a picture. */
-static status write_facts(const struct precision *p, const char *name, const char *what,
+static status write_facts(const struct precision *p, const char *picture, const char *what,
                           json_t *files)
 {
-  const struct path path = path_of("%s/%s.figure.json", p->folder.text, name);
-  const struct path about =
-    path_of("%s: %s error against %s", p->study.ask.scene, kind_words[p->kind], what);
+  enum { BY_KIND = 100, PAIRS_LATER = 50 };
+  const char *scene = p->study.ask.scene, *kind = kind_words[p->kind];
+  const int order = BY_KIND * p->kind + (strcmp(picture, "error-pairs") ? 0 : PAIRS_LATER);
+  const struct path path = path_of("%s/%s.figure.json", p->folder.text, picture);
+  const struct path name = path_of("%s-%s-%s%s", scene, kind, p->aa ? "aa-" : "", picture);
+  const struct path about = path_of("%s: %s error against %s", scene, kind, what);
+  const struct path command = path_of("precision %s --kind %s%s%s", scene, kind,
+                                      p->study.ask.quick ? " --quick" : "", p->aa ? " --aa" : "");
   const struct path statement = path_of(
-    "Error (%s) %s. Lines: Pareto front of each solver over spacing, time step and tolerance; bars: "
-    "interval of the median of %ld repetitions. Differences below %.3g times are noise (%s).",
+    "Error (%s) %s. Small marks: all points; lines: the Pareto front of each solver over spacing, "
+    "time step and tolerance; bars: interval of the median of %ld repetitions. Failed runs stand "
+    "in the margin. Differences below %.3g times are noise (%s).",
     p->study.error, kind_meanings[p->kind], p->repeat, p->floor, p->floor_means);
   struct new_file file;
   json_t *facts =
-    json_pack("{s:s, s:s, s:s, s:s, s:O}", "name", name, "about", about.text, "statement",
-              statement.text, "command", p->study.ask.scene, "files", files);
+    json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:O}", "name", name.text, "picture", picture,
+              "kind", "measured", "about", about.text, "statement", statement.text, "command",
+              command.text, "order", order, "files", files);
   status result = facts ? file_begin(&file, path.text) : status_set(ERR_MEMORY, "out of memory");
   if (result == OK) {
     json_dumpf(facts, file.stream, JSON_INDENT(1));

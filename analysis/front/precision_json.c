@@ -233,8 +233,8 @@ static json_t *whole(const struct precision *p)
   json_t *object = json_pack("{s:s, s:b, s:b, s:{s:s, s:s, s:s}, s:o, s:o, s:{s:f, s:s}}", "scene",
                              s->ask.scene, "quick", s->ask.quick, "aa", p->aa, "error", "metric",
                              p->kind == KIND_TOTAL || p->kind == KIND_SPATIAL ? s->error
-                             : s->is_projection || s->is_periodic ? "distance of velocities"
-                                                                  : "distance of positions",
+                             : s->is_projection ? "distance of velocities"
+                                                : "distance of positions",
                              "kind", kind_words[p->kind], "meaning", kind_meanings[p->kind],
                              "points", points_json(p), "fronts", fronts_json(p, 0), "noise",
                              "floor", p->floor, "means", p->floor_means);

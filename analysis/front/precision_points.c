@@ -73,6 +73,9 @@ static struct sweep_plan plan_of(const struct precision *p, const struct method 
   struct sweep_plan plan = p->study.plan;
   const struct values finest_dt = {.value = {least(&plan.dt)}, .n = 1};
   const struct values tightest = {.value = {least(&plan.tolerance)}, .n = 1};
+  const struct values finest = {.value = {least(&plan.spacing)}, .n = 1};
+  /* errors of solving and stepping are those of one system of particles */
+  if (p->kind == KIND_ALGEBRAIC || p->kind == KIND_TEMPORAL) plan.spacing = finest;
   if (p->kind == KIND_ALGEBRAIC) plan.dt = one;
   if (p->kind == KIND_SPATIAL) plan.dt = finest_dt;
   if (p->kind == KIND_SPATIAL || p->kind == KIND_TEMPORAL) plan.tolerance = tightest;
@@ -168,7 +171,8 @@ static char *check_reference(const struct precision *p, const struct point *poin
   const double most = fact_number(*facts, "iterations.max");
   const double cap = fact_number(*facts, "parameters.max_iterations");
   if (p->kind == KIND_ALGEBRAIC && most >= cap)
-    return text_make("what it is compared with did not converge in %g iterations", cap);
+    return text_make("what it is compared with did not converge in %g iterations (%.2g left)", cap,
+                     fact_number(*facts, "residual.last"));
   return NULL;
 }
 

@@ -78,7 +78,7 @@ static status note_time(const struct precision *p, const struct point *point, in
                            arm, "seconds", point->seconds[arm][point->taken[arm] - 1], "setup",
                            setup, "cpu", processor_name(p), "threads", (json_int_t)p->threads,
                            "solver", point_solver(p, point), "date", date);
-  char *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+  char *text = line ? json_dumps(line, JSON_COMPACT) : NULL;
   json_decref(line);
   FILE *file = text ? fopen(path.text, "a") : NULL;
   const int failed = !file || fprintf(file, "%s\n", text) < 0;

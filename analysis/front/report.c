@@ -20,6 +20,12 @@ static int is_last(const struct journal *journal, int k)
   return 1;
 }
 
+/* Runs of precision and convergence are many, and have figures and tables of their own. */
+static int is_measurement(const struct journal_entry *entry)
+{
+  return strstr(entry->what, "--count-pairs") != NULL;
+}
+
 static int by_name(const void *a, const void *b)
 {
   const struct journal_entry *x = ((const struct report_run *)a)->entry;
@@ -36,7 +42,7 @@ static status load_runs(struct report *r)
   if (!r->run) return status_set(ERR_MEMORY, "out of memory");
   for (int k = 0; k < r->journal.n; k++) {
     const struct journal_entry *entry = &r->journal.entry[k];
-    if (!is_last(&r->journal, k)) continue;
+    if (!is_last(&r->journal, k) || is_measurement(entry)) continue;
     const struct path path = run_file(r->results, entry->id, "json");
     const int has_facts = entry->outcome == OUTCOME_OK || entry->outcome == OUTCOME_DIVERGED;
     json_t *facts = has_facts ? json_load_file(path.text, 0, NULL) : NULL;
@@ -55,20 +61,57 @@ static int by_order(const void *a, const void *b)
   return (i > j) - (i < j);
 }
 
-static status load_figures(struct report *r)
+static status add_figure(struct report *r, struct path folder, struct path pictures, json_t *facts)
+{
+  if (!facts) return OK;
+  struct report_figure *more = realloc(r->figure, (size_t)(r->num_figures + 1) * sizeof *r->figure);
+  if (!more) {
+    json_decref(facts);
+    return status_set(ERR_MEMORY, "out of memory");
+  }
+  r->figure = more;
+  r->figure[r->num_figures++] = (struct report_figure){folder, pictures, facts};
+  return OK;
+}
+
+static status load_recipes(struct report *r)
 {
   const struct path figures = path_of("%s/figures", r->results);
   struct names names = folder_names(figures.text);
-  r->figure = calloc((size_t)names.n + 1, sizeof *r->figure);
-  for (int k = 0; r->figure && k < names.n; k++) {
+  status result = OK;
+  for (int k = 0; k < names.n && result == OK; k++) {
     const struct path folder = path_of("%s/%s", figures.text, names.name[k]);
     const struct path path = path_of("%s/figure.json", folder.text);
-    json_t *facts = json_load_file(path.text, 0, NULL);
-    if (facts) r->figure[r->num_figures++] = (struct report_figure){folder, facts};
+    result = add_figure(r, folder, figures, json_load_file(path.text, 0, NULL));
   }
   names_free(&names);
-  if (!r->figure) return status_set(ERR_MEMORY, "out of memory");
-  qsort(r->figure, (size_t)r->num_figures, sizeof *r->figure, by_order);
+  return result;
+}
+
+/* What precision, convergence and profile have drawn lies beside its data, some folders down. */
+static status load_measured(struct report *r, struct path folder, int depth)
+{
+  static const char ending[] = ".figure.json";
+  struct names names = folder_names(folder.text);
+  status result = OK;
+  for (int k = 0; k < names.n && result == OK; k++) {
+    const struct path path = path_of("%s/%s", folder.text, names.name[k]);
+    const size_t length = strlen(names.name[k]), end = sizeof ending - 1;
+    if (depth > 0 && path_is_folder(path.text))
+      result = load_measured(r, path, depth - 1);
+    else if (length > end && strcmp(names.name[k] + length - end, ending) == 0)
+      result = add_figure(r, folder, folder, json_load_file(path.text, 0, NULL));
+  }
+  names_free(&names);
+  return result;
+}
+
+static status load_figures(struct report *r)
+{
+  TRY(load_recipes(r));
+  TRY(load_measured(r, path_of("%s/precision", r->results), 2));
+  TRY(load_measured(r, path_of("%s/convergence", r->results), 2));
+  if (r->num_figures > 0) qsort(r->figure, (size_t)r->num_figures, sizeof *r->figure, by_order);
   return OK;
 }
 
@@ -84,9 +127,10 @@ static void report_free(struct report *r)
 static void write_page(FILE *page, const struct report *r)
 {
   page_begin(page, r);
-  page_figures(page, r, 1);
+  page_figures(page, r, SORT_MEASURED);
+  page_figures(page, r, SORT_FRAMES);
   page_metrics(page, r);
-  page_figures(page, r, 0);
+  page_figures(page, r, SORT_CURVES);
   page_compatibility(page, r);
   page_origin(page, r);
   page_end(page);
@@ -97,7 +141,7 @@ static status write_report(struct report *r, const char *out)
   struct new_file file;
   TRY(load_runs(r));
   TRY(load_figures(r));
-  if (r->num_runs == 0)
+  if (r->num_runs == 0 && r->num_figures == 0)
     return user_error("report: '%s' holds no results (no run in journal.jsonl)", r->results);
   TRY(file_begin(&file, out));
   write_page(file.stream, r);

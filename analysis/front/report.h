@@ -16,8 +16,8 @@ struct report {
   struct report_run *run;
   int num_runs;
   struct report_figure {
-    struct path folder; /* of its data */
-    json_t *facts;      /* figure.json */
+    struct path folder, pictures; /* of its data; of its .svg and .png */
+    json_t *facts;                /* figure.json */
   } * figure;
   int num_figures;
 };
@@ -26,9 +26,9 @@ struct report {
 void page_begin(FILE *page, const struct report *report);
 void page_end(FILE *page);
 
-/* report_figures.c: figures of frames, or the others. Pictures or data that are missing are said to
- * be. */
-void page_figures(FILE *page, const struct report *report, int frames);
+/* report_figures.c: figures of one sort. Pictures or data that are missing are said to be. */
+enum figure_sort { SORT_MEASURED, SORT_FRAMES, SORT_CURVES }; /* errors against costs and orders */
+void page_figures(FILE *page, const struct report *report, enum figure_sort sort);
 
 /* report_tables.c */
 void page_metrics(FILE *page, const struct report *report);

@@ -15,10 +15,17 @@ static const char *text_in(const json_t *object, const char *key)
 
 /* --- pictures --- */
 
-static void put_png(FILE *page, const struct report *r, const json_t *facts)
+/* The file's name may differ from the figure's, which is unique. */
+static struct path picture_path(const struct report_figure *figure, const char *kind)
 {
-  const char *name = text_in(facts, "name");
-  const struct path path = path_of("%s/figures/%s.png", r->results, name);
+  const char *name = text_in(figure->facts, "name"), *file = text_in(figure->facts, "picture");
+  return path_of("%s/%s.%s", figure->pictures.text, *file ? file : name, kind);
+}
+
+static void put_png(FILE *page, const struct report_figure *figure)
+{
+  const json_t *facts = figure->facts;
+  const struct path path = picture_path(figure, "png");
   char *png;
   size_t size;
   if (file_read(path.text, &png, &size) != OK) {
@@ -31,17 +38,16 @@ static void put_png(FILE *page, const struct report *r, const json_t *facts)
   free(png);
 }
 
-static void put_picture(FILE *page, const struct report *r, const json_t *facts)
+static void put_picture(FILE *page, const struct report_figure *figure)
 {
-  const char *name = text_in(facts, "name");
-  const struct path path = path_of("%s/figures/%s.svg", r->results, name);
+  const struct path path = picture_path(figure, "svg");
   char *svg = NULL;
   size_t size = 0;
   fputs("<div class=paper>", page);
   if (file_read(path.text, &svg, &size) == OK && size <= MOST_SVG)
-    html_svg(page, svg, name);
+    html_svg(page, svg, text_in(figure->facts, "name"));
   else
-    put_png(page, r, facts);
+    put_png(page, figure);
   fputs("</div>\n", page);
   free(svg);
 }
@@ -172,29 +178,40 @@ static void put_table(FILE *page, const struct report_figure *figure)
   free(text);
 }
 
-static void put_figure(FILE *page, const struct report *r, const struct report_figure *figure)
+static void put_figure(FILE *page, const struct report_figure *figure)
 {
   const json_t *facts = figure->facts;
+  const char *command = text_in(facts, "command");
   html_put(page, "<figure id=\"%s\">\n<h3>%s</h3>\n", text_in(facts, "name"),
            text_in(facts, "about"));
   if (strcmp(text_in(facts, "kind"), "table") == 0)
     put_table(page, figure);
   else
-    put_picture(page, r, facts);
-  html_put(page, "<figcaption>%s</figcaption>\n<p class=origin><code>sphbench figure %s</code> ",
-           text_in(facts, "statement"), text_in(facts, "name"));
+    put_picture(page, figure);
+  html_put(page, "<figcaption>%s</figcaption>\n<p class=origin><code>sphbench %s%s</code> ",
+           text_in(facts, "statement"), *command ? "" : "figure ",
+           *command ? command : text_in(facts, "name"));
   put_data(page, figure);
   fputs("</p>\n</figure>\n", page);
 }
 
-void page_figures(FILE *page, const struct report *r, int frames)
+static enum figure_sort sort_of(const json_t *facts)
 {
+  const char *kind = text_in(facts, "kind");
+  if (strcmp(kind, "measured") == 0) return SORT_MEASURED;
+  return strcmp(kind, "frames") == 0 ? SORT_FRAMES : SORT_CURVES;
+}
+
+void page_figures(FILE *page, const struct report *r, enum figure_sort sort)
+{
+  static const char *const titles[] = {[SORT_MEASURED] =
+                                         "<h2 id=precision>Error against cost, and orders</h2>\n",
+                                       [SORT_FRAMES] = "<h2 id=gallery>Gallery</h2>\n",
+                                       [SORT_CURVES] = "<h2 id=figures>Figures</h2>\n"};
   int n = 0;
   for (int k = 0; k < r->num_figures; k++) {
-    const int is_frames = strcmp(text_in(r->figure[k].facts, "kind"), "frames") == 0;
-    if (is_frames != frames) continue;
-    if (n++ == 0)
-      fputs(frames ? "<h2 id=gallery>Gallery</h2>\n" : "<h2 id=figures>Figures</h2>\n", page);
-    put_figure(page, r, &r->figure[k]);
+    if (sort_of(r->figure[k].facts) != sort) continue;
+    if (n++ == 0) fputs(titles[sort], page);
+    put_figure(page, &r->figure[k]);
   }
 }

@@ -61,7 +61,8 @@ void page_begin(FILE *page, const struct report *report)
           "<p>%d runs, %d figures. Every number comes from the result files of these runs; "
           "every solver has the same colour and mark in all figures.</p>\n",
           report->num_runs, report->num_figures);
-  fputs("<nav><a href=#gallery>Gallery</a><a href=#metrics>Metrics</a><a href=#figures>Figures</a>"
+  fputs("<nav><a href=#precision>Error against cost</a><a href=#gallery>Gallery</a>"
+        "<a href=#metrics>Metrics</a><a href=#figures>Figures</a>"
         "<a href=#compatibility>Not run or failed</a><a href=#origin>Origin</a></nav>\n",
         page);
 }

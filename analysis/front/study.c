@@ -85,6 +85,25 @@ static double parameter_default(const json_t *shown, const char *name)
   return json_number_value(json_object_get(parameter(shown, name), "default"));
 }
 
+static status check_error(const struct study *s)
+{
+  const json_t *metrics = json_object_get(s->scene, "metrics");
+  const char *names[256];
+  int n = 0;
+  size_t k;
+  json_t *row;
+  if (has_name(metrics, s->error)) return OK;
+  json_array_foreach((json_t *)metrics, k, row)
+  {
+    if (json_string_value(row) && n < 256) names[n++] = json_string_value(row);
+  }
+  const char *near = nearest_name(s->error, names, n);
+  return near ? user_error("--error: the scene has no '%s'; the nearest metric is '%s'", s->error,
+                           near)
+              : user_error("--error: the scene has no '%s'; 'sphbench show %s' lists its metrics",
+                           s->error, s->ask.scene);
+}
+
 static status learn_scene(struct study *s, const struct path *executable)
 {
   json_t *list = told(executable, "list", "scenes");
@@ -93,13 +112,12 @@ static status learn_scene(struct study *s, const struct path *executable)
   TRY(known);
   s->scene = told(executable, "show", s->ask.scene);
   if (!s->scene) return status_set(ERR_IO, "'%s' cannot show its scenes", executable->text);
-  s->error = json_string_value(json_object_get(s->scene, "error"));
+  s->error = s->ask.error ? s->ask.error : json_string_value(json_object_get(s->scene, "error"));
   s->spacing = parameter_default(s->scene, "spacing");
   s->dt = parameter_default(s->scene, "dt");
   s->t_end = parameter_default(s->scene, "t_end");
   s->is_projection = has_name(json_object_get(s->scene, "asks"), "PROJECT");
-  s->is_periodic = has_name(json_object_get(s->scene, "asks"), "PERIODIC");
-  if (s->error) return OK;
+  if (s->error) return check_error(s);
   return user_error("%s: the scene '%s' has no known truth to measure an error against",
                     s->ask.verb, s->ask.scene);
 }
@@ -201,7 +219,7 @@ static double iterations_for(double factor)
 
 static void put_effort(struct words *w, const struct method *m, double factor)
 {
-  const double converged = 1e-10, most = 10000;
+  const double converged = 1e-10, most = 100000;
   for (int k = 0; k < m->num_tolerances; k++) {
     const struct tolerance *t = &m->tolerance[k];
     const double wanted = factor > 0 ? t->initial * factor : converged;
@@ -369,4 +387,28 @@ status values_parse(const char *flag, const char *text, struct values *values)
     if (!*end) return OK;
     at = end + 1;
   }
+}
+
+status value_parse(const char *flag, const char *text, double *value)
+{
+  struct values one;
+  if (!text) return OK;
+  TRY(values_parse(flag, text, &one));
+  if (one.n != 1) return user_error("%s: '%s' found, one number expected", flag, text);
+  *value = one.value[0];
+  return OK;
+}
+
+status study_sets(struct study_request *ask, int argc, char **argv)
+{
+  for (int i = 2; i < argc; i++) {
+    const char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
+                        : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
+                                                                        : NULL;
+    if (!value) continue;
+    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
+    if (ask->num_sets == MOST_SETS) return user_error("--set: more than %d of them", MOST_SETS);
+    ask->set[ask->num_sets++] = (char *)value;
+  }
+  return OK;
 }

@@ -46,7 +46,8 @@ struct knobs {
 struct study_request {
   const char *verb, *scene, *results;
   const char *solvers; /* "A,B"; NULL: all */
-  const char *dim, *precision, *backend, *t_end;
+  const char *error;   /* a metric in place of the scene's main one */
+  const char *dim, *precision, *backend;
   int quick;
   char *set[MOST_SETS];
   int num_sets;
@@ -60,7 +61,6 @@ struct study {
   const char *error;          /* the metric that is the error against the truth */
   double spacing, dt, t_end;  /* the scene's own */
   int is_projection;          /* no time passes: dt and t_end do nothing */
-  int is_periodic;            /* positions are wrapped: two runs are compared by velocities */
   struct sweep_plan plan;     /* for precision */
   struct values levels;       /* spacings for convergence */
   double jitter;              /* of disturbed starts [dx] */
@@ -96,12 +96,16 @@ double fact_number(const json_t *facts, const char *keys);
 char *study_failure(const struct queue *queue, int run, json_t **facts);
 
 /* Relative distance of two runs of the same particles at their end, by label: |a - b| / |b - start|
- * over positions; of a projection over velocities; in a periodic domain |a - b| / |b| over
+ * over positions (the nearest images, where the domain is periodic); of a projection over
  * velocities. ERR_IO. */
 status study_distance(const struct study *study, const struct queue *queue, int run, int other,
                       double *distance);
 
-/* "1,2,3" as numbers > 0. ERR_USER with the flag. */
+/* "1,2,3" as numbers > 0; what was there is kept where text is NULL. ERR_USER with the flag. */
 status values_parse(const char *flag, const char *text, struct values *values);
+status value_parse(const char *flag, const char *text, double *value);
+
+/* The values of all --set, which may be given several times. ERR_USER. */
+status study_sets(struct study_request *ask, int argc, char **argv);
 
 #endif

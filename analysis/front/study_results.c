@@ -66,7 +66,13 @@ static void ends_free(struct ends *ends)
   free(ends->last.values);
 }
 
-static status compare(const struct ends *a, const struct ends *b, int from_start, double *distance)
+static double nearest_image(double x, double period)
+{
+  return period > 0 ? x - period * round(x / period) : x;
+}
+
+static status compare(const struct ends *a, const struct ends *b, const double period[3],
+                      double *distance)
 {
   const long n = a->last.rows * a->last.components;
   const double late = fabs(a->time - b->time);
@@ -77,8 +83,9 @@ static status compare(const struct ends *a, const struct ends *b, int from_start
     return status_set(ERR_IO, "two runs that are to be compared end at %g s and %g s", a->time,
                       b->time);
   for (long k = 0; k < n; k++) {
-    const double e = a->last.values[k] - b->last.values[k];
-    const double moved = b->last.values[k] - (from_start ? b->first.values[k] : 0);
+    const double side = period[k % b->last.components];
+    const double e = nearest_image(a->last.values[k] - b->last.values[k], side);
+    const double moved = nearest_image(b->last.values[k] - b->first.values[k], side);
     error += e * e;
     size += moved * moved;
   }
@@ -86,15 +93,25 @@ static status compare(const struct ends *a, const struct ends *b, int from_start
   return OK;
 }
 
+static void read_period(const struct queue *queue, int run, double period[3])
+{
+  json_t *facts = run_facts_json(queue, run);
+  const json_t *sides = json_object_get(facts, "period");
+  for (size_t d = 0; d < 3; d++) period[d] = json_number_value(json_array_get(sides, d));
+  json_decref(facts);
+}
+
 status study_distance(const struct study *study, const struct queue *queue, int run, int other,
                       double *distance)
 {
-  const char *name = study->is_projection || study->is_periodic ? "velocity" : "position";
+  const char *name = study->is_projection ? "velocity" : "position";
   struct ends a, b = {.time = 0};
+  double period[3] = {0, 0, 0};
+  if (!study->is_projection) read_period(queue, other, period);
   *distance = (double)NAN;
   status result = read_ends(queue, run, name, &a);
   if (result == OK) result = read_ends(queue, other, name, &b);
-  if (result == OK) result = compare(&a, &b, !study->is_periodic, distance);
+  if (result == OK) result = compare(&a, &b, period, distance);
   ends_free(&a);
   ends_free(&b);
   return result;

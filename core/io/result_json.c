@@ -124,6 +124,8 @@ static json_t *whole(const struct run_facts *f)
               text(status_words[f->status]), "reason", text(f->reason), "steps",
               (json_int_t)f->steps, "time_end", number(f->time_end), "particles",
               (json_int_t)f->particles, "walls", (json_int_t)f->walls);
+  json_object_set_new(object, "period",
+                      json_pack("[f, f, f]", f->period[0], f->period[1], f->period[2]));
   json_object_set_new(object, "parameters", values_of(f->num_parameters, f->parameters));
   json_object_set_new(object, "parameter_units", units_of(f->num_parameters, f->parameters));
   json_object_set_new(object, "iterations",

@@ -60,7 +60,8 @@ struct run_facts {
   enum run_status status;
   const char *reason; /* one sentence, NULL when there is nothing to say */
   long steps, particles, walls;
-  double time_end; /* simulated time reached [s] */
+  double period[3]; /* sides of a periodic domain [m], 0 where it is open */
+  double time_end;  /* simulated time reached [s] */
   struct {
     double mean; /* per step */
     long max, total;

@@ -12,6 +12,38 @@ STAGE void residual(const struct cg *s, int i)
   s->r[i] = s->b[i] - times_matrix(s, s->x, i);
   s->d[i] = s->r[i] / s->diag[i];
 }
+/* (diag_i - sum_j coef_ij)/diag_i: 0 in every row where a constant costs nothing; rows that stand
+ * alone do not matter: q_i = 0 for them, else 1. */
+STAGE real anchor(const struct cg *s, int i)
+{
+  lanes off = NO_LANES;
+  for_slots(&s->rows, i, ij) off += kept(s->coef, ij);
+  const real coupled = sum(off);
+  s->q[i] = coupled > 0;
+  return coupled > 0 ? fabs(1 - coupled / s->diag[i]) : 0;
+}
+STAGE real weight_of(const struct cg *s, int i) { return s->q[i] * s->weight[i]; }
+STAGE real weighted_b(const struct cg *s, int i) { return s->q[i] * s->weight[i] * s->b[i]; }
+STAGE void level_b(const struct cg *s, int i) { s->b[i] -= s->q[i] * s->mean; }
+
+/* Without a free surface only differences of x count, and A x = b has a solution where b has no
+ * mean: take it away. CG from an x without a mean finds the x that has none. */
+static int floats(const struct cg *s)
+{
+  const double rounding = sizeof(real) == sizeof(float) ? 1e-5 : 1e-11;
+  double most;
+  largest_over(anchor, s, s->n, &most);
+  return most <= rounding;
+}
+static void level(struct cg *s)
+{
+  double total, mean;
+  sum_over(weight_of, s, s->n, &total);
+  sum_over(weighted_b, s, s->n, &mean);
+  s->mean = total > 0 ? (real)(mean / total) : 0;
+  sweep_over(level_b, s, s->n);
+}
+
 STAGE void clear(const struct cg *s, int i) { s->x[i] = 0; }
 STAGE real norm_b(const struct cg *s, int i) { return s->weight[i] * sq(s->b[i]); }
 STAGE real norm_r(const struct cg *s, int i) { return s->weight[i] * sq(s->r[i]); }
@@ -37,6 +69,7 @@ struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
 {
   struct cg_result result = {0, 1, 0};
   double bb, rr, rz, dq;
+  if (floats(s)) level(s);
   sum_over(norm_b, s, s->n, &bb);
   if (bb == 0) {
     sweep_over(clear, s, s->n);

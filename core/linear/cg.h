@@ -1,7 +1,8 @@
 /* cg.h - conjugate gradients with Jacobi's preconditioner in a weighted inner product, for
  * operators (A p)_i = diag_i p_i - sum_j coef_ij p_j that are symmetric and positive definite in
  * <a, b> = sum_i w_i a_i b_i  (w_i coef_ij = w_j coef_ji). Hestenes & Stiefel 1952; Barrett et al.,
- * Templates (1994), Fig. 2.5. */
+ * Templates (1994), Fig. 2.5. Where every row of A adds up to 0 (no free surface, no wall of given
+ * pressure) constants cost nothing: b loses its weighted mean, and the x with none is found. */
 #ifndef CG_H
 #define CG_H
 #include "../neighbours/pairs.h"
@@ -16,10 +17,11 @@ struct cg {
   const real *coef;   /* off-diagonal coefficients [slots] */
   const real *diag;   /* > 0 [n] */
   const real *weight; /* of the inner product, > 0 [n] */
-  const real *b;      /* right-hand side [n] */
-  real *x;            /* start and solution [n] */
-  real *r, *d, *q;    /* work: residual, direction, A d [n] each */
-  real step, beta;    /* of the current iteration */
+  real *b;         /* right-hand side [n]; loses its mean where A has constants for a null space */
+  real *x;         /* start and solution [n] */
+  real *r, *d, *q; /* work: residual, direction, A d [n] each */
+  real step, beta; /* of the current iteration */
+  real mean;       /* taken from b or x */
 };
 
 struct cg_result {

@@ -31,6 +31,7 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
   f->run.status = RUN_RUNNING;
   f->run.particles = run->view->p.n;
   f->run.walls = run->view->p.n_all - run->view->p.n;
+  for (int d = 0; d < DIM; d++) f->run.period[d] = (double)run->scene.period.c[d];
   f->run.residual_last = NAN;
 }
 

@@ -5,6 +5,10 @@ struct wrapping {
   VIEW;
   vec low, period;
 };
+struct pulling {
+  VIEW;
+  real pull;
+};
 
 STAGE void move(const struct view *s, int i) { s->p.x[i] = madd(s->p.x[i], s->dt, s->p.v[i]); }
 
@@ -16,6 +20,12 @@ STAGE void wrap(const struct wrapping *s, int i)
 }
 
 STAGE void fall(const struct view *s, int i) { s->p.v[i] = madd(s->p.v[i], s->dt, s->gravity); }
+
+/* v_i = v_i - dt pull x_i */
+STAGE void fall_inwards(const struct pulling *s, int i)
+{
+  s->p.v[i] = madd(s->p.v[i], -s->dt * s->pull, s->p.x[i]);
+}
 
 /* rho_i = sum_j m_j W_ij */
 STAGE void density(const struct view *s, int i)
@@ -101,6 +111,15 @@ void physics_wrap(struct view *view, vec low, vec period)
 }
 
 void physics_gravity(struct view *s) { sweep(fall, s); }
+
+void physics_pull(struct view *view, real pull)
+{
+  struct pulling s;
+  s.p = view->p;
+  s.dt = view->dt;
+  s.pull = pull;
+  sweep(fall_inwards, &s);
+}
 
 void physics_density(struct view *s)
 {

@@ -28,6 +28,7 @@ unsigned scene_asks(const struct scene *scene)
     if (scene->fluid[k].viscosity > 0) asks |= CAN(VISCOSITY);
   }
   if (scene->num_emitters > 0) asks |= CAN(EMITTERS);
+  if (scene->pull != 0) asks |= CAN(GRAVITY);
   for (int d = 0; d < DIM; d++) {
     if (scene->gravity.c[d] != 0) asks |= CAN(GRAVITY);
     if (scene->period.c[d] > 0)
@@ -171,6 +172,7 @@ static void fill_view(struct run *run)
   v->dx = (real)c->spacing;
   v->mass = (real)lattice_mass(c->rho0, c->spacing, &kernel);
   v->xsph = (real)c->xsph;
+  v->sigma = (real)c->tension;
   v->gravity = run->scene.gravity;
 }
 

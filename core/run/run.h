@@ -112,6 +112,7 @@ void run_free(struct run *run);
 void physics_move(struct view *view);
 void physics_wrap(struct view *view, vec low, vec period);
 void physics_gravity(struct view *view);
+void physics_pull(struct view *view, real pull);
 void physics_density(struct view *view);
 void physics_viscosity(struct view *view);
 /* Sum of |v|^2 + |x|^2 (not finite if any position or velocity is not) and the largest speed [m/s].

@@ -276,7 +276,8 @@ static void apply_xsph(struct run *run)
 {
   const struct scene_params *c = &run->scene.common;
   const double h = (double)run->view->nb.kernel.R / 2;
-  run->view->xsph = (real)(c->xsph + c->xsph_rate * run->dt / h);
+  const double part = (double)run->view->dt / (double)(real)run->dt; /* of a substep, else 1 */
+  run->view->xsph = (real)(part * (c->xsph + c->xsph_rate * run->dt / h));
   physics_viscosity(run->view);
 }
 
@@ -293,11 +294,19 @@ status run_viscosity(struct run *run)
   return result;
 }
 
+status run_gravity(struct run *run)
+{
+  const struct scene *scene = &run->scene;
+  const enum phase before = clock_enter(PHASE_INTEGRATE);
+  if (inner(scene->gravity, scene->gravity) > 0) physics_gravity(run->view);
+  if (scene->pull != 0) physics_pull(run->view, scene->pull);
+  clock_enter(before);
+  return OK;
+}
+
 status run_forces(struct run *run)
 {
-  const enum phase before = clock_enter(PHASE_INTEGRATE);
-  if (scene_asks(&run->scene) & CAN(GRAVITY)) physics_gravity(run->view);
-  clock_enter(before);
+  TRY(run_gravity(run));
   return run_viscosity(run);
 }
 

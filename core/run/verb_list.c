@@ -164,7 +164,10 @@ static json_t *measures_json(const unsigned *measures)
 /* The metric that is the error of a run against the scene's truth; NULL: it has none. */
 static const char *main_error(const struct benchmark *b)
 {
+  static const int first[] = {METRIC_trajectory_error, METRIC_velocity_error};
   if (b->judged_by) return metric_names[b->judged_by];
+  for (int k = 0; k < COUNT(first); k++)
+    if (b->measures[first[k] / 32] >> (first[k] % 32) & 1u) return metric_names[first[k]];
   for (int k = NUM_GENERAL_METRICS; k < NUM_METRICS; k++) {
     const size_t length = strlen(metric_names[k]);
     const int is_error = length > 6 && strcmp(metric_names[k] + length - 6, "_error") == 0;

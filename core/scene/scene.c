@@ -103,7 +103,8 @@ int scene_wall_layers(const struct scene *scene)
 void scene_apply_jitter(struct scene *scene)
 {
   const double reach = scene->common.jitter * scene->common.spacing;
-  if (!(reach > 0)) return;
+  if (!(reach > 0) || scene->jittered) return;
+  scene->jittered = 1;
   const philox4x32_key_t key = {
     {(uint32_t)(scene->seed & 0xFFFFFFFFu), (uint32_t)(scene->seed >> 32)}};
   for (int i = 0; i < scene->n; i++) {

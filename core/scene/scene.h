@@ -92,6 +92,8 @@ struct scene {
   vec low, high; /* domain; a particle outside is lost. build sets it */
   vec period;    /* side of the periodic domain, 0 where open */
   vec gravity;   /* set from common.gravity before build; a scene may change it */
+  real pull;     /* a force -pull x on the fluid, beside gravity [1/s^2] */
+  int jittered;  /* scene_apply_jitter was called */
 };
 
 /* The point (x, depth, height); 2-D has no depth. Gravity points along -height. */
@@ -156,7 +158,8 @@ status scene_add_emitter(struct scene *scene, const struct scene_emitter *emitte
 int scene_wall_layers(const struct scene *scene);
 
 /* Displace the fluid by up to common.jitter dx per axis (uniform, Random123 stream of the seed and
- * the particle's number). */
+ * the particle's number). Only the first call does: a scene whose velocities depend on the place
+ * calls it before it sets them, all others are displaced after build. */
 void scene_apply_jitter(struct scene *scene);
 
 /* Set the domain to the bounding box of all particles, `margin` [m] wider on every side. */

@@ -221,7 +221,8 @@ class Plugins(cli_case.Case):
         page = (self.prefix / "share/man/man1/sphbench.1").read_text()
         verbs = re.findall(r"^  (\w+)", self.call("--help")[0], re.M)
         for verb in set(verbs) & {"run", "figure", "sweep", "compare", "bless", "report", "list",
-                                  "show", "speed", "doctor", "precision"}:
+                                  "show", "speed", "doctor", "precision",
+                                  "convergence", "profile"}:
             self.assertRegex(page, rf'(?m)^\.B[IR]? "?{verb}\b', verb)
         script = self.prefix / "share/bash-completion/completions/sphbench"
         ask = (f'. {script}; COMP_WORDS=({self.prefix}/bin/sphbench run --solver pb); '

@@ -247,14 +247,37 @@ static void names_of_fields(void **unused)
   }
 }
 
+/* `--set KEY=VALUE` and a result file know a parameter by its name alone: the scenes' common ones,
+ * a scene's and a solver's. */
+static void names_of_parameters(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < num_solvers; k++)
+    for (int j = 0; j < solvers[k]->num_params; j++) {
+      const char *name = solvers[k]->params[j].name;
+      if (param_find(scene_param_rows, num_scene_params, name))
+        fail_msg("%s: every scene has a parameter '%s'", solvers[k]->name, name);
+      for (int b = 0; b < num_benchmarks; b++)
+        if (param_find(benchmarks[b]->params, benchmarks[b]->num_params, name))
+          fail_msg("%s: scene %s has a parameter '%s' too", solvers[k]->name, benchmarks[b]->name,
+                   name);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(names_of_fields),    cmocka_unit_test(rest_stays_at_rest),
-    cmocka_unit_test(free_fall_is_exact), cmocka_unit_test(lonely_particle_goes_straight),
-    cmocka_unit_test(galilean),           cmocka_unit_test(mirror),
-    cmocka_unit_test(rotation),           cmocka_unit_test(relabelling),
-    cmocka_unit_test(momentum),           cmocka_unit_test(bits),
+    cmocka_unit_test(names_of_fields),
+    cmocka_unit_test(names_of_parameters),
+    cmocka_unit_test(rest_stays_at_rest),
+    cmocka_unit_test(free_fall_is_exact),
+    cmocka_unit_test(lonely_particle_goes_straight),
+    cmocka_unit_test(galilean),
+    cmocka_unit_test(mirror),
+    cmocka_unit_test(rotation),
+    cmocka_unit_test(relabelling),
+    cmocka_unit_test(momentum),
+    cmocka_unit_test(bits),
   };
   return cmocka_run_group_tests_name("laws " SPHBENCH_VARIANT, tests, NULL, NULL);
 }

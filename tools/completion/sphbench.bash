@@ -1,7 +1,7 @@
 # Completion of sphbench for bash: verbs, names and flags, as the command itself lists them.
 _sphbench() {
   local word=$2 before=$3 verb=${COMP_WORDS[1]-} command=${COMP_WORDS[0]}
-  local verbs='run list show sweep compare bless figure precision speed report doctor'
+  local verbs='run list show sweep compare bless figure precision convergence profile speed report doctor'
   names() { "$command" list "$1" 2>/dev/null | awk '{print $1}'; }
   offer() { mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word"); }
   if ((COMP_CWORD == 1)); then
@@ -27,7 +27,7 @@ _sphbench() {
     return
   fi
   case $verb in
-    run | precision) offer "$(names scenes)" ;;
+    run | precision | convergence) offer "$(names scenes)" ;;
     list) offer 'solvers scenes figures metrics variants plans' ;;
     show) offer "$(names solvers) $(names scenes) $(names figures) $(names metrics)" ;;
     sweep) offer "$(names plans)" ;;
