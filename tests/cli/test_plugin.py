@@ -26,6 +26,24 @@ runs:
 """
 
 
+RECIPE = """name: fall
+about: energy of a falling block
+statement: by a solver from outside and a built-in one
+order: 1
+runs:
+  - scene: free-fall
+    solvers: [{solvers}]
+    t_end: 0.02
+    frames: 1
+extract:
+  kind: series
+  columns: [kinetic_energy]
+labels:
+  x: t
+  y: E
+"""
+
+
 def done(*words, **more):
     process = subprocess.run([str(word) for word in words], capture_output=True, text=True, **more)
     if process.returncode:
@@ -143,6 +161,18 @@ class Plugins(cli_case.Case):
         self.assertEqual(len(lines), 3, "what is built in needs not be run again")
         self.assertEqual(lines[2]["solver"], NAME)
         self.assertNotEqual(lines[2]["id"], first[NAME]["id"])
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is missing")
+    def test_drawn(self):
+        (self.dir / "fall").mkdir()
+        (self.dir / "fall" / "recipe.yaml").write_text(RECIPE.format(solvers=f"{NAME}, dfsph"))
+        script = (self.prefix / "share/sphbench/paper-figures/patch-energy/patch-energy.gp")
+        shutil.copy(script, self.dir / "fall" / "fall.gp")
+        self.call("figure", "./fall", "--quiet", "--plugin", self.plugin, "-o", "out")
+        picture = (self.dir / "out" / "fall.svg").read_text()
+        for name in (NAME, "dfsph"):
+            self.assertIn(name, picture)
+        self.assertNotIn(NAME, self.call("figure", "./fall", "--quiet", code=2)[0])
 
     def test_a_regression_is_found(self):
         """The maintainer's CI: blessed results, then a method that leaves out a factor."""
