@@ -20,7 +20,8 @@ struct benchmark {
     measures[2]; /* REQUIRED: bits (1 << METRIC_..) of the scene's own metrics, in words of 32 */
   const struct param *params; /* its own, besides the common ones of scene.h */
   int num_params;
-  size_t state_size; /* of `self`, which begins with its params */
+  size_t
+    state_size; /* of `self`, which begins with its params; no pointers: it is saved as it is */
   /* The common parameters' defaults for this scene (dt, t_end, spacing, support, ...), before the
    * user's. Optional. */
   void (*defaults)(struct scene_params *common);

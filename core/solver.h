@@ -89,8 +89,9 @@ struct solver {
   status (*start)(struct run *run, void *state);
   /* Advance x and v from `time` to time + dt. REQUIRED. */
   status (*step)(struct run *run, void *state);
-  /* Particles were added between two steps (their private fields are 0) and the lists are new:
-   * bring up to date what step expects from the last one. Optional. */
+  /* Particles were added between two steps (their private fields are 0) and the lists are new, or
+   * the run was loaded from a file: bring up to date what step expects from the last one and does
+   * not find in KEPT fields or parameters. Optional. */
   status (*changed)(struct run *run, void *state);
   /* Replace v by its projection at fixed x, and set p. REQUIRED with CAN(PROJECT). */
   status (*project)(struct run *run, void *state);

@@ -62,7 +62,8 @@ const json_t *baseline_rule(const json_t *rules, const char *metric)
 /* Flags that change where a run writes or how fast it is, not what it computes. */
 static int flag_to_skip(const char *word)
 {
-  static const char *const with_value[] = {"--solver", "-o", "--json", "--threads", "--frames"};
+  static const char *const with_value[] = {"--solver",  "-o",       "--json",
+                                           "--threads", "--frames", "--plugin"};
   for (size_t k = 0; k < sizeof with_value / sizeof *with_value; k++)
     if (strcmp(word, with_value[k]) == 0) return 2;
   return strcmp(word, "--quiet") == 0 || strcmp(word, "--explain") == 0;

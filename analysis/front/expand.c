@@ -6,6 +6,21 @@
 #include "process.h"
 #include "variants.h"
 
+/* What the first variant says that can; a plug-in may be there for some only. */
+static json_t *solver_list(struct path *executable)
+{
+  for (int k = -1; k < NUM_VARIANTS; k++) {
+    const struct variant v = k < 0 ? (struct variant){"openmp", "f64", 2} : variant_number(k);
+    const char *const argv[] = {executable->text, "list", "solvers", "--json", NULL};
+    if (variant_executable(&v, executable) != OK) continue;
+    char *text = process_output(argv);
+    json_t *list = text ? json_loads(text, 0, NULL) : NULL;
+    free(text);
+    if (list) return list;
+  }
+  return NULL;
+}
+
 status solver_names(struct names *names)
 {
   const struct variant wanted = {"openmp", "f64", 2};
@@ -13,12 +28,12 @@ status solver_names(struct names *names)
   struct path executable;
   *names = (struct names){NULL, 0};
   TRY(variant_any(&wanted, &any));
-  TRY(variant_executable(&any, &executable));
-  const char *const argv[] = {executable.text, "list", "solvers", "--json", NULL};
-  char *text = process_output(argv);
-  json_t *list = text ? json_loads(text, 0, NULL) : NULL, *row;
+  json_t *list = solver_list(&executable), *row;
   size_t k;
-  free(text);
+  if (!list && getenv("SPHBENCH_PLUGIN"))
+    return user_error("--plugin: '%s' cannot be loaded; 'sphbench list solvers --plugin ...' says "
+                      "why",
+                      getenv("SPHBENCH_PLUGIN"));
   if (list) names->name = calloc(json_array_size(list) + 1, sizeof *names->name);
   json_array_foreach(list, k, row)
   {

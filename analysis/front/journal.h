@@ -10,7 +10,8 @@
   O(DIVERGED, "diverged", "failed numerically, which is a result")                                 \
   O(UNABLE, "unable", "was refused: the solver cannot do this scene, or a mistake in the request") \
   O(CRASHED, "crashed", "ended by a signal or without a result")                                   \
-  O(TIMEOUT, "timeout", "was stopped at its time limit")
+  O(TIMEOUT, "timeout", "was stopped at its time limit")                                           \
+  O(OOM, "oom", "needed more memory than its limit")
 #define O(name, word, meaning) OUTCOME_##name,
 enum outcome { OUTCOME_LIST(O) NUM_OUTCOMES };
 #undef O

@@ -91,6 +91,10 @@ static status list_from_variant(const struct listing *to, const char *kind)
   json_t *list = text ? json_loads(text, 0, NULL) : NULL, *row;
   size_t k;
   free(text);
+  if (!list && getenv("SPHBENCH_PLUGIN"))
+    return user_error("--plugin: '%s' cannot be loaded; 'sphbench list solvers --plugin ...' says "
+                      "why",
+                      getenv("SPHBENCH_PLUGIN"));
   if (!list) return status_set(ERR_IO, "'%s' cannot list its %s", executable.text, kind);
   json_array_foreach(list, k, row)
   {

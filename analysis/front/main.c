@@ -20,7 +20,8 @@ static const char usage[] =
   "         --standard | --all    the standard ones; every one\n"
   "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
-  "         [--results DIR] [--jobs N] [--timeout S] [--fresh] [--dry-run] [--quiet]\n"
+  "         [--results DIR] [--jobs N] [--timeout S] [--memory MIB] [--fresh] [--dry-run]\n"
+  "         [--quiet]\n"
   "  stability SCENE           largest stable time step of each solver; why a longer one fails\n"
   "         [--map KEY=V,V,...] [--seeds N] [--ignore CRITERION,...] [--quick] [--json FILE]\n"
   "         --extreme [--solvers A,B]   the catalogue of extreme cases\n"
@@ -46,7 +47,8 @@ static const char usage[] =
   "\n"
   "  --help, --version\n"
   "\n"
-  "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double.\n"
+  "run, show, list and speed take --backend openmp|cuda, --dim 2|3, --precision float|double;\n"
+  "these, figure, sweep, precision and convergence take --plugin PATH: solvers from outside.\n"
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
@@ -123,6 +125,46 @@ static status carry_out(int argc, char **argv)
   return unknown(verb);
 }
 
+/* PATH[,PATH] with folders from the root on: children run elsewhere. */
+static char *absolute(const char *paths)
+{
+  char here[4096], *text = NULL;
+  size_t size = 0;
+  FILE *out = getcwd(here, sizeof here) ? open_memstream(&text, &size) : NULL;
+  for (const char *at = paths; out && *at;) {
+    const size_t length = strcspn(at, ",");
+    fprintf(out, "%s%s%s%.*s", at == paths ? "" : ",", *at == '/' ? "" : here,
+            *at == '/' ? "" : "/", (int)length, at);
+    at += length + (at[length] == ',');
+  }
+  if (out) fclose(out);
+  return text;
+}
+
+/* --plugin PATH of a verb that starts many runs goes to all of them by the environment. */
+static status take_plugin(int *argc, char **argv)
+{
+  static const char *const with_runs[] = {"figure", "sweep", "precision", "convergence", "list"};
+  int kept = 2, takes = 0;
+  enum { NUM_WITH_RUNS = sizeof with_runs / sizeof *with_runs };
+  for (int k = 0; k<NUM_WITH_RUNS && * argc> 1; k++) takes |= strcmp(argv[1], with_runs[k]) == 0;
+  for (int i = 2; i < *argc && takes; i++) {
+    const int is_it = strncmp(argv[i], "--plugin", 8) == 0 && (!argv[i][8] || argv[i][8] == '=');
+    if (!is_it) {
+      argv[kept++] = argv[i];
+      continue;
+    }
+    const char *path = argv[i][8] ? argv[i] + 9 : i + 1 < *argc ? argv[++i] : "";
+    if (!*path) return user_error("%s: --plugin needs a value: PATH", argv[1]);
+    char *whole = absolute(path);
+    if (!whole || setenv("SPHBENCH_PLUGIN", whole, 1))
+      return status_set(ERR_MEMORY, "out of memory");
+    free(whole);
+  }
+  if (takes) argv[ *argc = kept] = NULL;
+  return OK;
+}
+
 static int is_help(const char *word)
 {
   return !strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help");
@@ -140,7 +182,8 @@ int main(int argc, char **argv)
     puts("sphbench " SPHBENCH_VERSION);
     return 0;
   }
-  const status result = carry_out(argc, argv);
+  status result = take_plugin(&argc, argv);
+  if (result == OK) result = carry_out(argc, argv);
   if (result != OK) fprintf(stderr, "sphbench: %s\n", status_sentence());
   return status_exit_code(result);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,6 +27,10 @@ static void become(const struct process *p)
   if (p->one_thread) {
     setenv("OMP_NUM_THREADS", "1", 1);
     setenv("OMP_PROC_BIND", "false", 1); /* or all children would sit on the first core */
+  }
+  if (p->most_memory > 0) { /* of data, not of addresses, of which a GPU's driver takes many */
+    const rlim_t most = (rlim_t)p->most_memory << 20;
+    setrlimit(RLIMIT_DATA, &(struct rlimit){most, most});
   }
   if (p->folder && chdir(p->folder)) return;
   execvp(p->argv[0], (char *const *)p->argv);

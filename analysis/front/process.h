@@ -11,6 +11,7 @@ struct process {
   const char *log;         /* both outputs go to this file; NULL: they stay */
   int output;              /* standard output goes to this descriptor; 0: to the log */
   int one_thread;          /* OMP_NUM_THREADS=1, not bound to a core */
+  long most_memory;        /* [MiB] of data that it may hold; 0: any */
 };
 
 /* ERR_IO: it cannot be started. */

@@ -1,10 +1,12 @@
 /* What a run is: its arguments, its id, and whether it was done before. */
 #include "runs.h"
 
+#include <jansson.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "process.h"
 #include "variants.h"
 
 int processors(void)
@@ -121,6 +123,31 @@ static status executable_hash(const struct path *executable, unsigned long long 
   return OK;
 }
 
+/* The file that a solver of a plug-in comes from, as the executable says; "": it is built in, or
+ * nobody knows it. */
+static struct path plugin_of(const struct path *executable, const char *solver)
+{
+  struct path file = {{0}};
+  const char *const argv[] = {executable->text, "list", "solvers", "--json", NULL};
+  static struct path known;
+  static json_t *list;
+  if (!getenv("SPHBENCH_PLUGIN")) return file;
+  if (strcmp(known.text, executable->text) != 0) {
+    char *text = process_output(argv);
+    json_decref(list);
+    list = text ? json_loads(text, 0, NULL) : NULL;
+    known = *executable;
+    free(text);
+  }
+  for (size_t k = 0; k < json_array_size(list); k++) {
+    const json_t *row = json_array_get(list, k);
+    const char *name = json_string_value(json_object_get(row, "name"));
+    const char *from = json_string_value(json_object_get(row, "plugin"));
+    if (name && from && solver && strcmp(name, solver) == 0) file = path_of("%s", from);
+  }
+  return file;
+}
+
 static status identify(struct run *run, const char *scene)
 {
   unsigned long long hash;
@@ -128,15 +155,21 @@ static status identify(struct run *run, const char *scene)
   for (int k = 0; k < run->argc; k++)
     hash = hash_bytes(hash, run->argv[k], strlen(run->argv[k]) + 1);
   if (path_is_file(scene)) TRY(hash_file(&hash, scene));
+  const struct path plugin = plugin_of(&run->executable, run->argv[3]);
+  if (*plugin.text) TRY(hash_file(&hash, plugin.text));
   snprintf(run->id, sizeof run->id, "%016llx", hash);
   return OK;
 }
 
-/* Does what the journal says still hold? A run that was stopped at a limit may do with a longer
- * one. */
+/* Does what the journal says still hold? A run that was stopped at a limit may do with a longer or
+ * larger one. */
 static int is_whole(const struct queue *queue, const struct journal_entry *entry)
 {
   if (entry->outcome == OUTCOME_TIMEOUT) return queue->limit > 0 && entry->seconds >= queue->limit;
+  long had;
+  if (entry->outcome == OUTCOME_OOM)
+    return queue->memory > 0 && sscanf(entry->reason, OOM_REASON, &had) == 1 &&
+           had >= queue->memory;
   if (entry->outcome != OUTCOME_OK && entry->outcome != OUTCOME_DIVERGED) return 1;
   const struct path json = run_file(queue->results, entry->id, "json");
   const struct path frames = run_file(queue->results, entry->id, "vtkhdf");

@@ -35,6 +35,7 @@ struct queue {
   struct journal journal;
   int jobs;     /* at once */
   double limit; /* [s] that a run may take; 0: any */
+  long memory;  /* [MiB] that a run may hold; 0: any */
   int quiet;    /* no progress */
   int done;     /* were run just now */
 };
@@ -57,6 +58,9 @@ status queue_work(struct queue *queue);
 
 /* The file of a run: suffix "json", "vtkhdf" or "log". */
 struct path run_file(const char *results, const char *id, const char *suffix);
+
+/* Why a run ended with OUTCOME_OOM; written and read back. */
+#define OOM_REASON "needs more than %ld MiB"
 
 /* The last line of a log, without the program's name; to be released by free(). */
 char *run_last_words(const char *log);

@@ -8,7 +8,7 @@
 #include "plan.h"
 
 struct request {
-  const char *plan, *results, *jobs, *timeout;
+  const char *plan, *results, *jobs, *timeout, *memory;
   int fresh, dry_run, quiet;
 };
 
@@ -16,8 +16,9 @@ static status parse(struct request *r, int argc, char **argv)
 {
   const struct flag flags[] = {
     {"--results", &r->results, NULL}, {"--jobs", &r->jobs, NULL},
-    {"--timeout", &r->timeout, NULL}, {"--fresh", NULL, &r->fresh},
-    {"--dry-run", NULL, &r->dry_run}, {"--quiet", NULL, &r->quiet},
+    {"--timeout", &r->timeout, NULL}, {"--memory", &r->memory, NULL},
+    {"--fresh", NULL, &r->fresh},     {"--dry-run", NULL, &r->dry_run},
+    {"--quiet", NULL, &r->quiet},
   };
   int names = 0;
   const struct arguments what = {"sweep", flags, sizeof flags / sizeof *flags, &r->plan, 1, &names};
@@ -88,6 +89,7 @@ static status take_limits(const struct request *r, struct queue *queue)
 {
   long jobs = queue->jobs;
   TRY(argument_whole("--jobs", r->jobs, 1, 256, &jobs));
+  TRY(argument_whole("--memory", r->memory, 16, 1L << 30, &queue->memory));
   queue->jobs = (int)jobs;
   queue->quiet = r->quiet;
   if (!r->timeout) return OK;

@@ -1,8 +1,10 @@
 /* Carrying out a queue: children side by side, and what became of each. */
 #include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,7 +16,10 @@
 #include "process.h"
 #include "runs.h"
 
-enum { MOST_JOBS = 256, PATIENCE = 20 /* s, from asking a child to stop until it is killed */ };
+enum {
+  MOST_JOBS = 256,
+  PATIENCE = 20 /* s, at most, from asking a child to stop until it is killed */
+};
 
 struct child {
   pid_t pid; /* 0: free */
@@ -72,7 +77,8 @@ static status start(struct work *w, struct child *child, int number)
   for (int k = 0; k < NUM_FILES; k++) argv[1 + run->argc + k] = files[k];
   unlink(json.text); /* what a stopped run left would be taken for the new result */
   unlink(frames.text);
-  const struct process process = {.argv = argv, .log = log.text, .one_thread = 1};
+  const struct process process = {
+    .argv = argv, .log = log.text, .one_thread = 1, .most_memory = w->queue->memory};
   *child =
     (struct child){.run = number, .begun = clock_now(), .expected = expected_time(w->queue, run)};
   const status started = process_start(&process, &child->pid);
@@ -132,8 +138,17 @@ static int said_in_json(const char *path, char **reason)
   return is_diverged ? OUTCOME_DIVERGED : is_interrupted ? NUM_OUTCOMES : OUTCOME_CRASHED;
 }
 
+/* Did it run into the limit on memory? It says so itself, or it was full when a signal ended it,
+ * since not every method asks whether it was given what it asked for. */
+static int was_full(const struct queue *queue, int exit_code, const char *said, long peak)
+{
+  if (queue->memory == 0) return 0;
+  if (exit_code > 128) return peak > queue->memory * 3 / 4;
+  return exit_code == 3 && said && (strstr(said, "no memory") || strstr(said, "out of memory"));
+}
+
 /* NUM_OUTCOMES: none, the run was stopped and is to be run again. */
-static int classify(struct work *w, const struct run *run, int exit_code, char **reason)
+static int classify(struct work *w, const struct run *run, int exit_code, long peak, char **reason)
 {
   const struct path json = run_file(w->queue->results, run->id, "json");
   const struct path log = run_file(w->queue->results, run->id, "log");
@@ -153,6 +168,11 @@ static int classify(struct work *w, const struct run *run, int exit_code, char *
     return NUM_OUTCOMES;
   }
   if (exit_code == 77) return OUTCOME_UNABLE;
+  if (was_full(w->queue, exit_code, *reason, peak)) {
+    free(*reason);
+    *reason = text_make(OOM_REASON, w->queue->memory);
+    return OUTCOME_OOM;
+  }
   *reason = crash_reason(exit_code, *reason);
   return OUTCOME_CRASHED;
 }
@@ -177,7 +197,8 @@ static void tell(struct work *w, const struct run *run)
   w->bar.shown = shown;
 }
 
-static void take_end(struct work *w, struct child *child, int state)
+/* peak: the most memory that it held [MiB] */
+static void take_end(struct work *w, struct child *child, int state, long peak)
 {
   struct run *run = &w->queue->run[child->run];
   const int exit_code = WIFSIGNALED(state) ? 128 + WTERMSIG(state) : WEXITSTATUS(state);
@@ -185,7 +206,7 @@ static void take_end(struct work *w, struct child *child, int state)
   run->seconds = clock_now() - child->begun;
   const int too_long = child->stopped > 0 && exit_code != 0;
   if (too_long) run->reason = text_make("takes longer than %g s", w->queue->limit);
-  const int outcome = too_long ? OUTCOME_TIMEOUT : classify(w, run, exit_code, &run->reason);
+  const int outcome = too_long ? OUTCOME_TIMEOUT : classify(w, run, exit_code, peak, &run->reason);
   if (outcome == NUM_OUTCOMES) return;
   run->outcome = (enum outcome)outcome;
   run->finished = 1;
@@ -200,7 +221,8 @@ static void take_end(struct work *w, struct child *child, int state)
                                 .variant = run->name.text,
                                 .what = run->what};
   memcpy(entry.id, run->id, sizeof entry.id);
-  if (too_long || is_final(exit_code)) fail(w, journal_add(&w->queue->journal, &entry));
+  if (too_long || outcome == OUTCOME_OOM || is_final(exit_code))
+    fail(w, journal_add(&w->queue->journal, &entry));
 }
 
 /* --- progress --- */
@@ -256,14 +278,15 @@ static void stop_children(struct work *w)
     if (w->child[j].pid) kill(w->child[j].pid, number);
 }
 
-/* A run at its limit is asked to stop, and killed when it does not. */
+/* A run at its limit is asked to stop, and killed when it does not within the limit again. */
 static void keep_limit(struct work *w)
 {
+  const double shortest = 2, patience = fmin(PATIENCE, fmax(shortest, w->queue->limit));
   const double now = clock_now(), limit = w->queue->limit;
   for (int j = 0; j < w->jobs && limit > 0 && !(w->stopped > 0); j++) {
     struct child *child = &w->child[j];
     if (!child->pid || now - child->begun < limit) continue;
-    if (child->stopped > 0 && now - child->stopped < PATIENCE) continue;
+    if (child->stopped > 0 && now - child->stopped < patience) continue;
     kill(child->pid, child->stopped > 0 ? SIGKILL : SIGTERM);
     if (!(child->stopped > 0)) child->stopped = now;
   }
@@ -280,8 +303,9 @@ static void collect(struct work *w)
 {
   for (int j = 0; j < w->jobs; j++) {
     int state;
-    if (w->child[j].pid && waitpid(w->child[j].pid, &state, WNOHANG) > 0)
-      take_end(w, &w->child[j], state);
+    struct rusage used; /* ru_maxrss [KiB] */
+    if (w->child[j].pid && wait4(w->child[j].pid, &state, WNOHANG, &used) > 0)
+      take_end(w, &w->child[j], state, used.ru_maxrss / 1024);
   }
 }
 

@@ -14,10 +14,15 @@ struct setting {
   unsigned asks;
 };
 
-/* The registries of this executable. */
+/* The registries of this executable: what is built in. */
 extern const struct solver *const solvers[];
 extern const struct benchmark *const benchmarks[];
 extern const int num_solvers, num_benchmarks;
+/* All solvers, those of plug-ins too: behind the others, [solver_count]. */
+int solver_count(void);
+const struct solver *solver_number(int k);
+/* One more, from that file. Errors: ERR_USER when there are too many. */
+status solver_add(const struct solver *solver, const char *file);
 const struct solver *solver_find(const char *name);
 const struct benchmark *benchmark_find(const char *name);
 /* The solver of that name. Errors: ERR_USER with the nearest known one; also for NULL. */
@@ -55,6 +60,8 @@ enum { SAMPLE_TIME = NUM_METRICS, SAMPLE_ITERATIONS, SAMPLE_RESIDUAL };
 status record_sample(struct record *record, struct run *run, struct setting *setting,
                      struct snapshot *now);
 status record_step(struct record *record, const struct run *run);
+/* Room for so many samples and steps, which are to be filled in. Errors: ERR_MEMORY, ERR_USER. */
+status record_make_room(struct record *record, long rows, long steps);
 void record_free(struct record *record);
 
 /* Replace this process by the executable of the other dimension with the same arguments; returns

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../scene/scene_file.h"
+#include "plugins.h"
 
 /* Does this scene report the metric? The general ones always, a scene's own only if it measures
  * them. */
@@ -19,6 +20,7 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
 {
   memset(f, 0, sizeof *f);
   provenance_fill(&f->provenance, threads, o->argc, (const char *const *)o->argv);
+  plugin_report(run->solver, &f->provenance);
   f->run.provenance = &f->provenance;
   f->run.scene = plan->setting.benchmark ? o->name : scene_file_name(plan->setting.file);
   f->run.solver = run->solver->name;
@@ -112,10 +114,11 @@ void facts_end(struct facts *f, const struct plan *plan, const struct run *run,
   f->run.timing.phases = f->phases;
   f->run.timing.num_phases = NUM_PHASES;
   const double work = seconds - phase[PHASE_METRICS] - phase[PHASE_OUTPUT];
+  const long here = run->step - run->first_step;
   f->run.timing.total = seconds;
-  f->run.timing.per_step = run->step > 0 ? work / (double)run->step : 0;
-  f->run.timing.per_iteration =
-    f->run.iterations.total > 0 ? phase[PHASE_SOLVER] / (double)f->run.iterations.total : 0;
+  f->run.timing.per_step = here > 0 ? work / (double)here : 0;
+  const long iterations = f->run.iterations.total - run->first_iterations;
+  f->run.timing.per_iteration = iterations > 0 ? phase[PHASE_SOLVER] / (double)iterations : 0;
   f->run.pairs_visited = visits_total(run);
   f->run.judged = run->judge.first;
   f->run.num_judged = run->judge.n;

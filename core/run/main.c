@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "driver.h"
+#include "plugins.h"
 
 static const struct {
   const char *name;
@@ -27,6 +28,17 @@ static int report(status result)
   return status_exit_code(result);
 }
 
+/* What --plugin names is loaded at once. What the environment names (a sweep's children) only where
+ * it is needed: a run with a built-in solver must not suffer from a plug-in. */
+static status load_plugins(const struct options *o)
+{
+  const char *inherited = getenv("SPHBENCH_PLUGIN");
+  if (o->plugin) return plugins_load(o->plugin);
+  if (!inherited) return OK;
+  const int is_run = strcmp(o->verb, "run") == 0;
+  return is_run && (!o->solver || solver_find(o->solver)) ? OK : plugins_load(inherited);
+}
+
 static status carry_out(const struct options *o)
 {
   const char *names[COUNT(verbs)];
@@ -38,6 +50,7 @@ static status carry_out(const struct options *o)
       return OK;
     }
     TRY(options_check(o));
+    TRY(load_plugins(o));
     return verbs[k].run(o);
   }
   const char *near = o->verb ? nearest_name(o->verb, names, COUNT(verbs)) : NULL;

@@ -7,20 +7,23 @@
 enum { FOR_RUN = 1, FOR_SPEED = 2, FOR_LISTS = 4, FOR_MANY = FOR_RUN | FOR_SPEED, FOR_ALL = 7 };
 
 /* O(member, flag, argument, verbs, meaning) */
-#define OPTION_LIST(O)                                                                \
-  O(solver, "--solver", "NAME", FOR_RUN, "pressure solver (sphbench list solvers)")   \
-  O(solvers, "--solvers", "A,B", FOR_SPEED, "only these solvers")                     \
-  O(dt, "--dt", "S", FOR_RUN, "time step [s]")                                        \
-  O(t_end, "--t-end", "S", FOR_RUN, "end of the simulated time [s]")                  \
-  O(spacing, "--spacing", "M", FOR_RUN, "particle spacing [m]")                       \
-  O(dim, "--dim", "2|3", FOR_ALL, "number of dimensions")                             \
-  O(seed, "--seed", "N", FOR_RUN, "seed of everything random")                        \
-  O(precision, "--precision", "float|double", FOR_ALL, "arithmetic")                  \
-  O(backend, "--backend", "openmp|cuda", FOR_ALL, "machine")                          \
-  O(threads, "--threads", "N", FOR_MANY, "number of threads")                         \
-  O(frames, "--frames", "N", FOR_RUN, "frames in the result file, besides the start") \
-  O(output, "-o", "FILE", FOR_RUN, "result file (.vtkhdf)")                           \
-  O(json, "--json", "FILE", FOR_ALL, "the facts as JSON; - for standard output")      \
+#define OPTION_LIST(O)                                                                           \
+  O(solver, "--solver", "NAME", FOR_RUN, "pressure solver (sphbench list solvers)")              \
+  O(solvers, "--solvers", "A,B", FOR_SPEED, "only these solvers")                                \
+  O(dt, "--dt", "S", FOR_RUN, "time step [s]")                                                   \
+  O(t_end, "--t-end", "S", FOR_RUN, "end of the simulated time [s]")                             \
+  O(spacing, "--spacing", "M", FOR_RUN, "particle spacing [m]")                                  \
+  O(dim, "--dim", "2|3", FOR_ALL, "number of dimensions")                                        \
+  O(seed, "--seed", "N", FOR_RUN, "seed of everything random")                                   \
+  O(precision, "--precision", "float|double", FOR_ALL, "arithmetic")                             \
+  O(backend, "--backend", "openmp|cuda", FOR_ALL, "machine")                                     \
+  O(threads, "--threads", "N", FOR_MANY, "number of threads")                                    \
+  O(frames, "--frames", "N", FOR_RUN, "frames in the result file, besides the start")            \
+  O(output, "-o", "FILE", FOR_RUN, "result file (.vtkhdf)")                                      \
+  O(checkpoint, "--checkpoint", "S", FOR_RUN, "write FILE.restart every S seconds of wall time") \
+  O(restart, "--restart", "FILE", FOR_RUN, "go on from such a file, with the same arguments")    \
+  O(json, "--json", "FILE", FOR_ALL, "the facts as JSON; - for standard output")                 \
+  O(plugin, "--plugin", "PATH", FOR_ALL, "solvers from outside (docs/plug-ins.md)")              \
   O(particles, "--particles", "N", FOR_SPEED, "about so many particles")
 
 /* O(member, flag, verbs, meaning) */

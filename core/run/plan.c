@@ -21,7 +21,7 @@ status solver_require(const char *name, const struct solver **solver)
   if (*solver) return OK;
   const char *names[64];
   int n = 0;
-  for (; n < num_solvers && n < 64; n++) names[n] = solvers[n]->name;
+  for (; n < solver_count() && n < 64; n++) names[n] = solver_number(n)->name;
   return unknown("solver", name, names, n);
 }
 

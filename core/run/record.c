@@ -59,6 +59,20 @@ status record_step(struct record *r, const struct run *run)
   return OK;
 }
 
+status record_make_room(struct record *r, long rows, long steps)
+{
+  const long most = 1L << 40;
+  if (rows < 0 || steps < 0 || rows > most || steps > most)
+    return user_error("a series of %ld samples and %ld steps cannot be", rows, steps);
+  for (; r->rows < rows; r->rows = r->row_room < rows ? r->row_room : rows)
+    TRY(grow(r->sample, NUM_METRICS + 3, r->rows, &r->row_room));
+  for (; r->steps < steps; r->steps = r->step_room < steps ? r->step_room : steps)
+    TRY(grow(r->step, 3, r->steps, &r->step_room));
+  r->rows = rows;
+  r->steps = steps;
+  return OK;
+}
+
 void record_free(struct record *r)
 {
   for (int k = 0; k < NUM_METRICS + 3; k++) free(r->sample[k]);

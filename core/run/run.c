@@ -333,6 +333,7 @@ void run_free(struct run *run)
   particle_search.cell_set_free(&run->fluid_cells);
   particle_search.cell_set_free(&run->wall_cells);
   particle_search.cell_set_free(&run->virtual_cells);
+  memory_give(run->listed, sizeof(vec) * (size_t)run->listed_room);
   memory_give(run->order, sizeof(int) * (size_t)run->order_capacity);
   memory_give(run->keys, sizeof *run->keys * (size_t)run->keys_capacity);
   store_close(&run->store);

@@ -32,6 +32,7 @@ struct run {
   unsigned needs;
   double dt, time; /* [s] */
   long step;
+  long first_step, first_iterations; /* what a restarted run found done */
   int dim;
 
   struct cell_set fluid_cells, wall_cells, virtual_cells;
@@ -51,8 +52,12 @@ struct run {
   long layers[MOST_EMITTERS]; /* that each emitter has made */
   int num_labels;             /* given so far */
   int have_grid, has_wall_rows, density_is_current;
+  int keeps_listed; /* is `listed` kept up to date? (restart.h) */
+  vec *listed;      /* positions when neighbours were listed [listed_room], NULL without */
+  int listed_room;
 
   struct iterations iterations[MAX_ITERATIONS];
+  char iteration_word[MAX_ITERATIONS][32]; /* their names, where they come from a file */
   int num_iterations;
   int step_iterations; /* of this step, all solves */
   double step_residual;
@@ -94,6 +99,12 @@ status walls_weigh(struct run *run);
 
 /* emit.c: particles that are due at the start of a step. Errors: ERR_MEMORY. */
 status run_emit(struct run *run);
+
+/* sets.c: the lists at the positions that p.x holds, which are those of the last sort: nothing is
+ * moved into the period, and no particle changes its place. */
+status run_list_again(struct run *run);
+/* Keep the positions of the lists in run->listed. Errors: ERR_MEMORY. */
+status run_remember_listed(struct run *run);
 
 /* Bytes per fluid particle of everything that scales with them: fields, pair lists, coefficients,
  * cells. */

@@ -117,11 +117,23 @@ static status build_list(struct run *run, struct pair_list *list, enum pair_set 
   return result;
 }
 
-status run_neighbours(struct run *run)
+status run_remember_listed(struct run *run)
+{
+  const int all = run->view->p.n_all;
+  if (all > run->listed_room) {
+    memory_give(run->listed, sizeof(vec) * (size_t)run->listed_room);
+    run->listed_room = all + all / 4;
+    run->listed = (vec *)memory_take(sizeof(vec) * (size_t)run->listed_room);
+    if (!run->listed) run->listed_room = 0;
+  }
+  if (!run->listed) return status_set(ERR_MEMORY, "no memory for %d positions", all);
+  memory_copy(run->listed, run->view->p.x, sizeof(vec) * (size_t)all);
+  return OK;
+}
+
+static status list_neighbours(struct run *run)
 {
   struct view *s = run->view;
-  const enum phase before = clock_enter(PHASE_NEIGHBOURS);
-  if (scene_asks(&run->scene) & CAN(PERIODIC)) physics_wrap(s, run->scene.low, run->scene.period);
   struct grid grid;
   if (run->body)
     particle_search.positions_bounds(s->p.x + s->p.n, s->p.n_all - s->p.n, &run->wall_low,
@@ -135,8 +147,24 @@ status run_neighbours(struct run *run)
   if (result == OK && (grid_changed || run->body) && s->p.n_all > s->p.n) result = sort_walls(run);
   if (result == OK) result = sort_fluid(run);
   if (result == OK) result = build_list(run, &run->neighbours, SET_FLUID, SET_ALL, &s->nb);
+  if (result == OK && run->keeps_listed) result = run_remember_listed(run);
+  return result;
+}
+
+status run_neighbours(struct run *run)
+{
+  const enum phase before = clock_enter(PHASE_NEIGHBOURS);
+  if (scene_asks(&run->scene) & CAN(PERIODIC))
+    physics_wrap(run->view, run->scene.low, run->scene.period);
+  const status result = list_neighbours(run);
   clock_enter(before);
   return result;
+}
+
+status run_list_again(struct run *run)
+{
+  run->have_grid = 0; /* the walls are sorted too, or their cells would be those of the start */
+  return list_neighbours(run);
 }
 
 status run_wall_rows(struct run *run)

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "driver.h"
+#include "plugins.h"
 
 static int print_json(json_t *what)
 {
@@ -21,10 +22,21 @@ static void list_one(json_t *array, const char *name, const char *about)
     printf("%-22s %s\n", name, about);
 }
 
+static void list_solvers(json_t *array)
+{
+  for (int k = 0; k < solver_count(); k++) {
+    const struct solver *s = solver_number(k);
+    list_one(array, s->name, s->about);
+    if (array && plugin_file(s))
+      json_object_set_new(json_array_get(array, json_array_size(array) - 1), "plugin",
+                          json_string(plugin_file(s)));
+  }
+}
+
 static void list_kind(json_t *array, const char *kind)
 {
   if (strcmp(kind, "solvers") == 0)
-    for (int k = 0; k < num_solvers; k++) list_one(array, solvers[k]->name, solvers[k]->about);
+    list_solvers(array);
   else if (strcmp(kind, "scenes") == 0)
     for (int k = 0; k < num_benchmarks; k++)
       list_one(array, benchmarks[k]->name, benchmarks[k]->about);
@@ -218,7 +230,7 @@ status verb_show(const struct options *o)
     }
     names[n++] = metric_names[k];
   }
-  for (int k = 0; k < num_solvers; k++) names[n++] = solvers[k]->name;
+  for (int k = 0; k < solver_count(); k++) names[n++] = solver_number(k)->name;
   for (int k = 0; k < num_benchmarks; k++) names[n++] = benchmarks[k]->name;
   const char *near = nearest_name(o->name, names, n);
   return near ? user_error("show: nothing is called '%s'; the nearest name is '%s'", o->name, near)

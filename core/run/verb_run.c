@@ -14,6 +14,7 @@
 #include "../io/result_file.h"
 #include "../io/result_json.h"
 #include "facts.h"
+#include "restart.h"
 
 /* One run from the command line and everything that is open for it. */
 struct session {
@@ -26,6 +27,8 @@ struct session {
   struct progress bar;
   long frames, next_frame, steps;
   double next_sample, t_end;
+  char *checkpoint;                         /* the file of --checkpoint; NULL: there is none */
+  double checkpoint_every, checkpoint_next; /* [s] of wall time */
 };
 enum { MOST_STEPS = 1000000000 };
 
@@ -163,15 +166,60 @@ static status drive(struct session *s, double time)
   return ready ? OK : status_set(ERR_MEMORY, "no memory for the prescribed motion");
 }
 
+static struct checkpoint checkpoint_of(struct session *s)
+{
+  return (struct checkpoint){s->facts.run.scene, &s->plan, s->run, &s->record, &s->next_sample};
+}
+
+static status prepare_checkpoint(struct session *s)
+{
+  const char *text = s->o->checkpoint;
+  char *end;
+  if (!text) return OK;
+  s->checkpoint_every = strtod(text, &end);
+  if (end == text || *end || !(s->checkpoint_every >= 0))
+    return user_error("--checkpoint: '%s' found, allowed is a number of seconds, at least 0", text);
+  if (s->plan.setting.benchmark && s->plan.setting.benchmark->projection)
+    return user_error("--checkpoint: scene '%s' is a single step", s->o->name);
+  s->checkpoint = checkpoint_path(s->o);
+  if (!s->checkpoint) return status_set(ERR_MEMORY, "no memory for the name of a file");
+  s->checkpoint_next = clock_now() + s->checkpoint_every;
+  return restart_prepare(s->run);
+}
+
+/* When it is time, and when the run is stopped; before the samples that are due in this step. */
+static status checkpoint(struct session *s)
+{
+  if (!s->checkpoint || s->run->diverged) return OK;
+  if (!stop_signal && clock_now() < s->checkpoint_next) return OK;
+  const struct checkpoint c = checkpoint_of(s);
+  TRY(checkpoint_save(s->checkpoint, &c));
+  s->checkpoint_next = clock_now() + s->checkpoint_every;
+  return OK;
+}
+
+static status go_on(struct session *s)
+{
+  const struct checkpoint c = checkpoint_of(s);
+  if (!s->o->restart) return OK;
+  TRY(checkpoint_load(s->o->restart, &c));
+  if (s->run->step > s->steps)
+    return user_error("--restart: '%s' stands at %.6g s, --t-end is %.6g s", s->o->restart,
+                      s->run->time, s->t_end);
+  return sample(s, s->run->step == s->steps);
+}
+
 /* A signal is looked at once per step, so that the last step always leaves a sample and a frame. */
 static status step_to_end(struct session *s)
 {
   struct run *run = s->run;
+  TRY(go_on(s));
   int last = stop_signal || run->step == s->steps;
   while (!last) {
     TRY(drive(s, run->time + run->dt));
     TRY(run_step(run));
     TRY(record_step(&s->record, run));
+    TRY(checkpoint(s));
     last = stop_signal || run->diverged || run->step == s->steps;
     TRY(sample(s, last));
     char note[64];
@@ -306,6 +354,7 @@ static status carry_out(struct session *s, int threads)
   s->run->judge.driven = set->benchmark && set->benchmark->drive;
   if (s->o->dry_run) return dry_run(s);
   TRY(start(s, threads));
+  TRY(prepare_checkpoint(s));
   progress_begin(&s->bar, s->o->name, s->o->quiet);
   clock_reset();
   const double begun = clock_now();
@@ -335,6 +384,7 @@ status verb_run(const struct options *o)
   }
   if (result == OK) result = carry_out(&s, (int)threads);
   result_file_discard(s.file);
+  free(s.checkpoint);
   record_free(&s.record);
   if (s.run) run_free(s.run);
   plan_free(&s.plan);

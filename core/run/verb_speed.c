@@ -172,13 +172,14 @@ status verb_speed(const struct options *o)
   if (say) print_heading(&p, &top);
   struct speed_case cases[64];
   int n = 0;
-  for (int k = 0; k < num_solvers && n < 64; k++) {
-    if (!wanted(o->solvers, solvers[k]->name)) continue;
+  for (int k = 0; k < solver_count() && n < 64; k++) {
+    const struct solver *solver = solver_number(k);
+    if (!wanted(o->solvers, solver->name)) continue;
     memset(&cases[n], 0, sizeof cases[n]);
-    cases[n].solver = solvers[k]->name;
+    cases[n].solver = solver->name;
     cases[n].iteration = cases[n].fraction = cases[n].step = (double)NAN;
     cases[n].equal = (struct equal_case){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    const status result = time_solver(solvers[k], (int)particles, top.bandwidth, &cases[n]);
+    const status result = time_solver(solver, (int)particles, top.bandwidth, &cases[n]);
     if (result == ERR_RUN) /* a result: shown as a gap */
       snprintf(cases[n].reason, sizeof cases[n].reason, "%s", status_sentence());
     else if (result != OK)

@@ -72,6 +72,11 @@ double visits_total(const struct run *run)
   return total;
 }
 
+void visits_resume(struct run *run, double total)
+{
+  if (run->visits) run->visits->total += total - visits_total(run);
+}
+
 void visits_free(struct run *run)
 {
   for (int k = 0; run->visits && k < NUM_LISTS; k++)

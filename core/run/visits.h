@@ -21,6 +21,9 @@ status visits_renew(struct run *run, struct pair_list *list);
 /* Pairs visited so far; 0 where they are not counted. */
 double visits_total(const struct run *run);
 
+/* Count on from a total of before, if pairs are counted. */
+void visits_resume(struct run *run, double total);
+
 void visits_free(struct run *run);
 
 #ifdef __cplusplus
