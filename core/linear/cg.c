@@ -12,24 +12,24 @@ STAGE void residual(const struct cg *s, int i)
   s->r[i] = s->b[i] - times_matrix(s, s->x, i);
   s->d[i] = s->r[i] / s->diag[i];
 }
-/* q_i = 0 for rows that stand alone, else 1 */
+/* d_i = 0 for rows that stand alone, else 1 */
 STAGE void couple(const struct cg *s, int i)
 {
   lanes off = NO_LANES;
   for_slots(&s->rows, i, ij) off += kept(s->coef, ij);
-  s->q[i] = sum(off) > 0;
+  s->d[i] = sum(off) > 0;
 }
 /* (diag_i - sum_j coef_ij)/diag_i over the coupled: 0 in every row where a constant costs nothing;
  * rows beside one that stands alone, as beside a surface, are held by it. */
 STAGE real anchor(const struct cg *s, int i)
 {
   lanes off = NO_LANES;
-  for_slots(&s->rows, i, ij) off += kept(s->coef, ij) * of(s->q, ij);
-  return s->q[i] > 0 ? fabs(1 - sum(off) / s->diag[i]) : 0;
+  for_slots(&s->rows, i, ij) off += kept(s->coef, ij) * of(s->d, ij);
+  return s->d[i] > 0 ? fabs(1 - sum(off) / s->diag[i]) : 0;
 }
-STAGE real weight_of(const struct cg *s, int i) { return s->q[i] * s->weight[i]; }
-STAGE real weighted_b(const struct cg *s, int i) { return s->q[i] * s->weight[i] * s->b[i]; }
-STAGE void level_b(const struct cg *s, int i) { s->b[i] -= s->q[i] * s->mean; }
+STAGE real weight_of(const struct cg *s, int i) { return s->d[i] * s->weight[i]; }
+STAGE real weighted_b(const struct cg *s, int i) { return s->d[i] * s->weight[i] * s->b[i]; }
+STAGE void level_b(const struct cg *s, int i) { s->b[i] -= s->d[i] * s->mean; }
 
 /* Without a free surface only differences of x count, and A x = b has a solution where b has no
  * mean: take it away. CG from an x without a mean finds the x that has none. */

@@ -19,7 +19,7 @@ struct cg {
   const real *weight; /* of the inner product, > 0 [n] */
   real *b;         /* right-hand side [n]; loses its mean where A has constants for a null space */
   real *x;         /* start and solution [n] */
-  real *r, *d, *q; /* work: residual, direction, A d [n] each */
+  real *r, *d, *q; /* work [n]: residual, direction, A d; d is 0 for what rows list beyond n */
   real step, beta; /* of the current iteration */
   real mean;       /* taken from b or x */
 };

@@ -142,10 +142,13 @@ static void compare(const struct run *a, const struct run *b, const char *what)
   assert_int_equal(a->num_iterations, b->num_iterations);
   for (int k = 0; k < a->num_iterations; k++) {
     assert_string_equal(a->iterations[k].what, b->iterations[k].what);
-    assert_true(a->iterations[k].total == b->iterations[k].total &&
-                a->iterations[k].solves == b->iterations[k].solves &&
-                a->iterations[k].capped == b->iterations[k].capped &&
-                a->iterations[k].most == b->iterations[k].most);
+    if (a->iterations[k].total != b->iterations[k].total ||
+        a->iterations[k].solves != b->iterations[k].solves ||
+        a->iterations[k].capped != b->iterations[k].capped ||
+        a->iterations[k].most != b->iterations[k].most)
+      fail_msg("%s, %s: %ld iterations of '%s' in %ld solves, not %ld in %ld", name, what,
+               a->iterations[k].total, a->iterations[k].what, a->iterations[k].solves,
+               b->iterations[k].total, b->iterations[k].solves);
   }
   for (int k = 0; k < a->store.num_fields; k++) {
     const struct store_field *f = &a->store.field[k], *g = &b->store.field[k];
