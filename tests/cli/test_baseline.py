@@ -1,5 +1,6 @@
-"""The quick plan over every solver against results/baselines/quick.json: what ./check holds all
-solvers to. A change that is meant is blessed: sphbench bless RESULTS BASELINE.json --reason TEXT."""
+"""The quick plan over every solver, against results/baselines/quick.json.
+
+A change that is meant is blessed: sphbench bless RESULTS BASELINE.json --reason TEXT."""
 import pathlib
 import unittest
 
