@@ -7,6 +7,7 @@
  * paper's. Lower case indices are real particles, upper case virtual ones.
  *
  * Differences from the paper: see DIFFERENCES below. */
+#include "../core/neighbours/node_keys.h"
 #include "dual.h"
 #include <limits.h>
 
@@ -87,21 +88,7 @@ static status project_sb(struct run *run, void *self)
 
 /* --- S.C: nodes of a grid */
 
-enum { STENCIL = DIM == 2 ? 13 : 33, KEY_BITS = DIM == 2 ? 31 : 21 };
-#define NO_KEY (~0ULL)
-#define KEY_ZERO (1LL << (KEY_BITS - 1))
-
-STAGE unsigned long long key_of(const long long k[DIM])
-{
-  unsigned long long key = 0;
-  for (int d = 0; d < DIM; d++) key = key << KEY_BITS | (unsigned long long)(k[d] + KEY_ZERO);
-  return key;
-}
-STAGE void node_of(unsigned long long key, long long k[DIM])
-{
-  for (int d = DIM - 1; d >= 0; d--, key >>= KEY_BITS)
-    k[d] = (long long)(key & ((1ULL << KEY_BITS) - 1)) - KEY_ZERO;
-}
+enum { STENCIL = DIM == 2 ? 13 : 33 };
 
 /* Sec. 5.1 (2)  k = round((x_i - x_0) / d_v), the node nearest to a real particle;
  * none for walls that the fluid cannot feel. */
@@ -109,10 +96,8 @@ STAGE void nearest(const state *s, int i)
 {
   long long k[DIM];
   const real inverse = 1 / (s->virtual_spacing * s->dx);
-  for (int d = 0; d < DIM; d++) {
-    const real q = rint((s->p.x[i].c[d] - s->origin.c[d]) * inverse), limit = (real)(KEY_ZERO - 4);
-    k[d] = (long long)larger(smaller(q, limit), -limit);
-  }
+  for (int d = 0; d < DIM; d++)
+    k[d] = node_whole(rint((s->p.x[i].c[d] - s->origin.c[d]) * inverse));
   const int felt = i < s->p.n || grid_occupied(&s->grid, s->cells, s->p.x[i], 2);
   s->keys[i] = felt ? key_of(k) : NO_KEY;
 }

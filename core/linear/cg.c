@@ -12,12 +12,14 @@ STAGE void residual(const struct cg *s, int i)
   s->r[i] = s->b[i] - times_matrix(s, s->x, i);
   s->d[i] = s->r[i] / s->diag[i];
 }
-/* d_i = 0 for rows that stand alone, else 1 */
-STAGE void couple(const struct cg *s, int i)
+/* d_i = 0 for rows that stand alone, else 1; returns by how much its own diagonal holds a row */
+STAGE real couple(const struct cg *s, int i)
 {
   lanes off = NO_LANES;
   for_slots(&s->rows, i, ij) off += kept(s->coef, ij);
-  s->d[i] = sum(off) > 0;
+  const real coupled = sum(off);
+  s->d[i] = coupled > 0;
+  return coupled > 0 ? 1 - coupled / s->diag[i] : 0;
 }
 /* (diag_i - sum_j coef_ij)/diag_i over the coupled: 0 in every row where a constant costs nothing;
  * rows beside one that stands alone, as beside a surface, are held by it. */
@@ -37,7 +39,8 @@ static int floats(const struct cg *s)
 {
   const double rounding = sizeof(real) == sizeof(float) ? 1e-5 : 1e-11;
   double most;
-  sweep_over(couple, s, s->n);
+  largest_over(couple, s, s->n, &most);
+  if (most > rounding) return 0; /* as at a free surface: the usual case, in one pass */
   largest_over(anchor, s, s->n, &most);
   return most <= rounding;
 }
