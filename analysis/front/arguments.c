@@ -66,3 +66,17 @@ status argument_whole(const char *flag, const char *text, long low, long high, l
     return user_error("%s: %s found, allowed is %ld to %ld", flag, text, low, high);
   return OK;
 }
+
+status arguments_sets(int argc, char **argv, char **set, int most, int *num_sets)
+{
+  for (int i = 2; i < argc; i++) {
+    char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
+                  : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
+                                                                  : NULL;
+    if (!value) continue;
+    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
+    if (*num_sets == most) return user_error("--set: more than %d of them", most);
+    set[(*num_sets)++] = value;
+  }
+  return OK;
+}

@@ -21,6 +21,10 @@ struct arguments {
 };
 status arguments_parse(const struct arguments *what, int argc, char **argv);
 
+/* The values of all --set KEY=VALUE, which may be given several times: into set [most]. ERR_USER.
+ */
+status arguments_sets(int argc, char **argv, char **set, int most, int *num_sets);
+
 /* A whole number in [low, high]; *value is kept where text is NULL. ERR_USER. */
 status argument_whole(const char *flag, const char *text, long low, long high, long *value);
 

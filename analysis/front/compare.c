@@ -7,6 +7,7 @@
 #include "arguments.h"
 #include "baseline.h"
 #include "front.h"
+#include "json_out.h"
 
 enum { MOST_LINES = 20 }; /* of the table that people read */
 
@@ -55,17 +56,16 @@ static void print_table(const struct comparisons *all)
 
 /* --- what machines read */
 
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
-
 static json_t *rows_json(const struct comparisons *all)
 {
   json_t *rows = json_array();
   for (int k = 0; k < all->n; k++) {
     const struct comparison *row = &all->row[k];
-    json_array_append_new(
-      rows, json_pack("{s:s, s:s, s:o, s:o, s:o, s:b, s:s}", "run", row->run, "name", row->name,
-                      "value", number(row->value), "baseline", number(row->baseline), "tolerance",
-                      number(row->tolerance), "pass", row->pass, "note", row->note));
+    json_array_append_new(rows, json_pack("{s:s, s:s, s:o, s:o, s:o, s:b, s:s}", "run", row->run,
+                                          "name", row->name, "value", json_out_number(row->value),
+                                          "baseline", json_out_number(row->baseline), "tolerance",
+                                          json_out_number(row->tolerance), "pass", row->pass,
+                                          "note", row->note));
   }
   return rows;
 }
@@ -78,17 +78,6 @@ static status write_text(const char *path, const char *text)
   TRY(file_begin(&file, path));
   fputs(text, file.stream);
   return file_commit(&file);
-}
-
-static status write_json(const char *path, json_t *object)
-{
-  char *text = json_dumps(object, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
-  char *line = text ? text_make("%s\n", text) : NULL;
-  const status result = write_text(path, line);
-  free(text);
-  free(line);
-  json_decref(object);
-  return result;
 }
 
 static void put_xml(FILE *out, const char *text)
@@ -140,9 +129,9 @@ static status report(const struct request *r, const struct comparisons *all)
   const int to_stdout = (r->json && !strcmp(r->json, "-")) || (r->junit && !strcmp(r->junit, "-"));
   if (!to_stdout) print_table(all);
   if (r->json)
-    TRY(write_json(r->json,
-                   json_pack("{s:i, s:i, s:i, s:o}", "compared", all->n, "failed", all->failed,
-                             "unknown", all->extra, "metrics", rows_json(all))));
+    TRY(json_out_finish(json_pack("{s:i, s:i, s:i, s:o}", "compared", all->n, "failed", all->failed,
+                                  "unknown", all->extra, "metrics", rows_json(all)),
+                        r->json, NULL));
   if (r->junit) TRY(write_junit(r->junit, all));
   if (all->runs == 0)
     return user_error("nothing was compared: no run of '%s' is in '%s'", r->names[0], r->names[1]);
@@ -213,7 +202,7 @@ static status bless(const struct request *r, json_t *baseline, const json_t *run
          all.failed - missing, fresh, missing);
   free(all.row);
   add_history(baseline, r->reason, changes);
-  return write_json(r->names[1], json_incref(baseline));
+  return json_out_write(r->names[1], baseline);
 }
 
 status verb_bless(int argc, char **argv)

@@ -36,7 +36,7 @@ static status parse(struct typed *t, int argc, char **argv)
                                  &t->ask.scene, 1,     NULL};
   *t = (struct typed){.ask = {.verb = "convergence", .results = "results"}};
   TRY(arguments_parse(&what, argc, argv));
-  return study_sets(&t->ask, argc, argv);
+  return arguments_sets(argc, argv, t->ask.set, MOST_SETS, &t->ask.num_sets);
 }
 
 /* What needs no scene to be checked. */

@@ -4,9 +4,9 @@
 
 #include "convergence.h"
 #include "figure.h"
+#include "json_out.h"
 #include "variants.h"
 
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 static json_t *text_or_null(const char *text) { return text ? json_string(text) : json_null(); }
 
 /* Half the time step may change so much of an error that is called spatial. */
@@ -30,11 +30,11 @@ static json_t *points_json(const struct convergence *c)
     const struct trial *t = &c->trial[k];
     json_t *row =
       json_pack("{s:s, s:o, s:o, s:i, s:o, s:s, s:b, s:o, s:s}", "solver",
-                c->study.method[t->knobs.method].name, "spacing", number(t->knobs.spacing), "dt",
-                t->knobs.dt > 0 ? number(t->knobs.dt) : json_null(), "level", t->level, "error",
-                t->reason ? json_null() : number(t->error), "error_kind",
-                kind_of(c, curve_of(c, t->knobs.method)), "valid", t->reason == NULL, "reason",
-                text_or_null(t->reason), "run", c->queue.run[t->run].id);
+                c->study.method[t->knobs.method].name, "spacing", json_out_number(t->knobs.spacing),
+                "dt", t->knobs.dt > 0 ? json_out_number(t->knobs.dt) : json_null(), "level",
+                t->level, "error", t->reason ? json_null() : json_out_number(t->error),
+                "error_kind", kind_of(c, curve_of(c, t->knobs.method)), "valid", t->reason == NULL,
+                "reason", text_or_null(t->reason), "run", c->queue.run[t->run].id);
     if (t->knobs.seed > 0) json_object_set_new(row, "seed", json_integer(t->knobs.seed));
     json_array_append_new(array, row);
   }
@@ -47,9 +47,9 @@ static json_t *levels_json(const struct convergence *c, const struct curve *curv
   for (int k = 0; k < c->h.n; k++)
     json_array_append_new(
       array, json_pack("{s:f, s:o, s:o, s:o, s:o}", c->over_dt ? "dt" : "spacing",
-                       curve->level[k].h, "error", number(curve->level[k].error),
-                       "relative_sd_of_mean", number(curve->level[k].sd), "local_order",
-                       number(curve->local[k]), "reason", text_or_null(curve->reason[k])));
+                       curve->level[k].h, "error", json_out_number(curve->level[k].error),
+                       "relative_sd_of_mean", json_out_number(curve->level[k].sd), "local_order",
+                       json_out_number(curve->local[k]), "reason", text_or_null(curve->reason[k])));
   return array;
 }
 
@@ -61,10 +61,11 @@ static json_t *orders_json(const struct convergence *c)
     json_array_append_new(
       array,
       json_pack("{s:s, s:o, s:o, s:o, s:i, s:s, s:o, s:o, s:o}", "solver",
-                c->study.method[curve->method].name, "order", number(curve->fit.order), "low",
-                number(curve->fit.low), "high", number(curve->fit.high), "levels_used",
-                curve->fit.n, "error_kind", kind_of(c, curve), "reason", text_or_null(curve->unfit),
-                "dt_influence", number(curve->dt_influence), "levels", levels_json(c, curve)));
+                c->study.method[curve->method].name, "order", json_out_number(curve->fit.order),
+                "low", json_out_number(curve->fit.low), "high", json_out_number(curve->fit.high),
+                "levels_used", curve->fit.n, "error_kind", kind_of(c, curve), "reason",
+                text_or_null(curve->unfit), "dt_influence", json_out_number(curve->dt_influence),
+                "levels", levels_json(c, curve)));
   }
   return array;
 }
@@ -89,29 +90,10 @@ static json_t *whole(const struct convergence *c)
                    refused_json(c), "limit", c->queue.limit);
 }
 
-static status write_to(const char *path, const json_t *object)
-{
-  struct new_file file;
-  TRY(file_begin(&file, path));
-  json_dumpf(object, file.stream, JSON_INDENT(1));
-  fputc('\n', file.stream);
-  return file_commit(&file);
-}
-
 status convergence_write(const struct convergence *c, const char *also)
 {
   const struct path path = path_of("%s/convergence.json", c->folder.text);
-  json_t *object = whole(c);
-  if (!object) return status_set(ERR_MEMORY, "out of memory for '%s'", path.text);
-  status result = write_to(path.text, object);
-  if (result == OK && also && strcmp(also, "-") == 0) {
-    json_dumpf(object, stdout, JSON_INDENT(1));
-    putchar('\n');
-  } else if (result == OK && also) {
-    result = write_to(also, object);
-  }
-  json_decref(object);
-  return result;
+  return json_out_finish(whole(c), path.text, also);
 }
 
 /* --- pictures --- */

@@ -3,12 +3,12 @@
 #include <string.h>
 #include <time.h>
 
+#include "json_out.h"
 #include "precision.h"
 
 const double precision_targets[NUM_TARGETS] = {0.1, 0.03, 0.01};
 const double precision_density_targets[NUM_TARGETS] = {0.01, 0.001, 0.0001};
 
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 static json_t *text_or_null(const char *text) { return text ? json_string(text) : json_null(); }
 
 /* --- points --- */
@@ -28,9 +28,9 @@ static json_t *knobs_json(const struct point *point)
   json_t *parameters = json_object_get(point->facts, "parameters"), *value;
   json_t *object = json_object();
   const char *name;
-  json_object_set_new(object, "spacing", number(point->knobs.spacing));
-  if (point->knobs.dt > 0) json_object_set_new(object, "dt", number(point->knobs.dt));
-  json_object_set_new(object, "tolerance_factor", number(point->knobs.factor));
+  json_object_set_new(object, "spacing", json_out_number(point->knobs.spacing));
+  if (point->knobs.dt > 0) json_object_set_new(object, "dt", json_out_number(point->knobs.dt));
+  json_object_set_new(object, "tolerance_factor", json_out_number(point->knobs.factor));
   json_object_foreach(parameters, name, value)
   {
     if (is_knob(name)) json_object_set(object, name, value);
@@ -47,12 +47,12 @@ static void set_times(json_t *object, const struct precision *p, const struct po
     if (copy) time = interval_of_median(copy, (int)p->repeat);
     free(copy);
   }
-  json_object_set_new(object, "time", number(time.median));
-  json_object_set_new(object, "time_low", number(time.low));
-  json_object_set_new(object, "time_high", number(time.high));
-  json_object_set_new(object, "time_coverage", number(time.coverage));
+  json_object_set_new(object, "time", json_out_number(time.median));
+  json_object_set_new(object, "time_low", json_out_number(time.low));
+  json_object_set_new(object, "time_high", json_out_number(time.high));
+  json_object_set_new(object, "time_coverage", json_out_number(time.coverage));
   json_object_set_new(object, "repetitions", json_integer(point->taken[arm]));
-  json_object_set_new(object, "setup", number(point->setup_median));
+  json_object_set_new(object, "setup", json_out_number(point->setup_median));
 }
 
 static json_t *point_json(const struct precision *p, const struct point *point, int arm)
@@ -61,14 +61,16 @@ static json_t *point_json(const struct precision *p, const struct point *point, 
   const struct path name = candidate_name(p, &c);
   json_t *object =
     json_pack("{s:s, s:o, s:o, s:s}", "solver", name.text, "parameters", knobs_json(point), "error",
-              number(point->error), "error_kind", kind_words[point->kind]);
+              json_out_number(point->error), "error_kind", kind_words[point->kind]);
   set_times(object, p, point, arm);
-  json_object_set_new(object, "pairs", number(point->visits));
-  json_object_set_new(object, "density_error", number(point->density_error));
-  json_object_set_new(object, "iterations", number(fact_number(point->facts, "iterations.mean")));
-  json_object_set_new(object, "residual", number(fact_number(point->facts, "residual.last")));
-  json_object_set_new(object, "particles", number(fact_number(point->facts, "particles")));
-  json_object_set_new(object, "steps", number(fact_number(point->facts, "steps")));
+  json_object_set_new(object, "pairs", json_out_number(point->visits));
+  json_object_set_new(object, "density_error", json_out_number(point->density_error));
+  json_object_set_new(object, "iterations",
+                      json_out_number(fact_number(point->facts, "iterations.mean")));
+  json_object_set_new(object, "residual",
+                      json_out_number(fact_number(point->facts, "residual.last")));
+  json_object_set_new(object, "particles", json_out_number(fact_number(point->facts, "particles")));
+  json_object_set_new(object, "steps", json_out_number(fact_number(point->facts, "steps")));
   json_object_set_new(object, "valid", json_boolean(!point->reason));
   json_object_set_new(object, "reason", text_or_null(point->reason));
   json_object_set_new(object, "note", text_or_null(point->note));
@@ -251,27 +253,8 @@ static json_t *whole(const struct precision *p)
   return object;
 }
 
-static status write_to(const char *path, json_t *object)
-{
-  struct new_file file;
-  TRY(file_begin(&file, path));
-  json_dumpf(object, file.stream, JSON_INDENT(1));
-  fputc('\n', file.stream);
-  return file_commit(&file);
-}
-
 status precision_write(const struct precision *p, const char *also)
 {
   const struct path path = path_of("%s/precision.json", p->folder.text);
-  json_t *object = whole(p);
-  if (!object) return status_set(ERR_MEMORY, "out of memory for '%s'", path.text);
-  status result = write_to(path.text, object);
-  if (result == OK && also && strcmp(also, "-") == 0) {
-    json_dumpf(object, stdout, JSON_INDENT(1));
-    putchar('\n');
-  } else if (result == OK && also) {
-    result = write_to(also, object);
-  }
-  json_decref(object);
-  return result;
+  return json_out_finish(whole(p), path.text, also);
 }

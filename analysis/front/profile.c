@@ -10,6 +10,7 @@
 #include "arguments.h"
 #include "figure.h"
 #include "front.h"
+#include "json_out.h"
 #include "statistics.h"
 #include "variants.h"
 
@@ -220,8 +221,6 @@ static status write_data(const struct profiles *p, const struct names *known)
   return file_commit(&file);
 }
 
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
-
 static json_t *whole(const struct profiles *p)
 {
   const struct profile times = {p->time, p->num_problems, p->num_solvers};
@@ -239,33 +238,13 @@ static json_t *whole(const struct profiles *p)
   for (int k = 0; k < p->num_problems; k++) {
     json_t *time = json_object(), *pairs = json_object();
     for (int s = 0; s < p->num_solvers; s++) {
-      json_object_set_new(time, p->solver[s], number(p->problem[k].time[s]));
-      json_object_set_new(pairs, p->solver[s], number(p->problem[k].pairs[s]));
+      json_object_set_new(time, p->solver[s], json_out_number(p->problem[k].time[s]));
+      json_object_set_new(pairs, p->solver[s], json_out_number(p->problem[k].pairs[s]));
     }
     json_array_append_new(problems, json_pack("{s:s, s:o, s:o}", "problem", p->problem[k].name,
                                               "time", time, "pairs_per_particle", pairs));
   }
   return json_pack("{s:o, s:o}", "solvers", solvers, "problems", problems);
-}
-
-static status write_json(const struct profiles *p, const char *path)
-{
-  json_t *object = whole(p);
-  struct new_file file;
-  status result = object ? OK : status_set(ERR_MEMORY, "out of memory");
-  if (result == OK && strcmp(path, "-") == 0) {
-    json_dumpf(object, stdout, JSON_INDENT(1));
-    putchar('\n');
-  } else if (result == OK) {
-    result = file_begin(&file, path);
-    if (result == OK) {
-      json_dumpf(object, file.stream, JSON_INDENT(1));
-      fputc('\n', file.stream);
-      result = file_commit(&file);
-    }
-  }
-  json_decref(object);
-  return result;
 }
 
 static void say(const struct profiles *p)
@@ -303,8 +282,8 @@ static status work(struct profiles *p)
   TRY(solver_names(&known));
   status result = write_data(p, &known);
   names_free(&known);
-  if (result == OK) result = write_json(p, path.text);
-  if (result == OK && p->json) result = write_json(p, p->json);
+  if (result == OK) result = json_out_finish(whole(p), path.text, NULL);
+  if (result == OK && p->json) result = json_out_finish(whole(p), p->json, NULL);
   p->quiet |= p->json && strcmp(p->json, "-") == 0;
   if (result == OK && !p->quiet) say(p);
   return result == OK ? draw(p) : result;

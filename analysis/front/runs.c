@@ -228,3 +228,14 @@ status queue_add(struct queue *queue, const struct run_request *request, int *nu
   queue->run[queue->n++] = run;
   return OK;
 }
+
+double queue_known_time(const struct queue *queue, const struct run *run)
+{
+  for (int k = queue->journal.n - 1; k >= 0; k--) {
+    const struct journal_entry *e = &queue->journal.entry[k];
+    if (!strcmp(e->scene, run->argv[1]) && !strcmp(e->solver, run->argv[3]) &&
+        !strcmp(e->what, run->what))
+      return e->seconds;
+  }
+  return 0;
+}

@@ -56,6 +56,9 @@ status queue_add(struct queue *queue, const struct run_request *request, int *nu
  * (after the children stopped); ERR_IO. A run that fails is no error here but an outcome. */
 status queue_work(struct queue *queue);
 
+/* Seconds that the last run with the same arguments took, by any build; 0: it was never run. */
+double queue_known_time(const struct queue *queue, const struct run *run);
+
 /* The file of a run: suffix "json", "vtkhdf" or "log". */
 struct path run_file(const char *results, const char *id, const char *suffix);
 

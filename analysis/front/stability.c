@@ -14,20 +14,6 @@ struct typed {
   int extreme;
 };
 
-static status collect_sets(struct stability *s, int argc, char **argv)
-{
-  for (int i = 2; i < argc; i++) {
-    char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
-                  : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
-                                                                  : NULL;
-    if (!value) continue;
-    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
-    if (s->num_sets == MOST_SETS) return user_error("--set: more than %d of them", MOST_SETS);
-    s->set[s->num_sets++] = value;
-  }
-  return OK;
-}
-
 static status parse(struct typed *t, struct stability *s, int argc, char **argv)
 {
   const struct flag flags[] = {
@@ -48,7 +34,7 @@ static status parse(struct typed *t, struct stability *s, int argc, char **argv)
   *t = (struct typed){.plan = "extreme"};
   s->results = "results";
   TRY(arguments_parse(&what, argc, argv));
-  return collect_sets(s, argc, argv);
+  return arguments_sets(argc, argv, s->set, MOST_SETS, &s->num_sets);
 }
 
 /* KEY=V1,V2,... */

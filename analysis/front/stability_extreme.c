@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "figure.h"
+#include "json_out.h"
 #include "plan.h"
 #include "stability.h"
 
@@ -155,24 +156,7 @@ static status write_table(const struct row *rows, int n, const char *results, co
   if (!object) return status_set(ERR_MEMORY, "out of memory");
   for (int k = 0; k < n; k++)
     json_array_append_new(json_object_get(object, "rows"), row_json(&rows[k]));
-  const char *const paths[] = {own.text, also};
-  status result = OK;
-  for (int k = 0; k < 2 && result == OK; k++) {
-    struct new_file file;
-    if (!paths[k]) continue;
-    if (strcmp(paths[k], "-") == 0) {
-      json_dumpf(object, stdout, JSON_INDENT(1));
-      puts("");
-      continue;
-    }
-    result = file_begin(&file, paths[k]);
-    if (result != OK) break;
-    json_dumpf(object, file.stream, JSON_INDENT(1));
-    fputc('\n', file.stream);
-    result = file_commit(&file);
-  }
-  json_decref(object);
-  return result;
+  return json_out_finish(object, own.text, also);
 }
 
 /* --- the whole --- */

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "json_out.h"
 #include "stability.h"
 
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 static json_t *word_of(enum verdict v)
 {
   return v == VERDICT_STABLE ? json_null() : json_string(verdict_words[v]);
@@ -12,17 +12,17 @@ static json_t *word_of(enum verdict v)
 
 static json_t *prediction_json(const struct prediction *p)
 {
-  return json_pack("{s:o, s:o, s:o}", "cfl", number(p->cfl), "sound", number(p->sound), "viscous",
-                   number(p->viscous));
+  return json_pack("{s:o, s:o, s:o}", "cfl", json_out_number(p->cfl), "sound",
+                   json_out_number(p->sound), "viscous", json_out_number(p->viscous));
 }
 
 static json_t *trial_json(const struct stability *s, const struct trial *t)
 {
   const struct run *run = &s->queue.run[t->run];
-  return json_pack("{s:f, s:I, s:o, s:o, s:i, s:o, s:s, s:s}", "dt", t->dt, "seed",
-                   (json_int_t)t->seed, "failed", word_of(t->first), "time", number(t->time),
-                   "leaks", t->leaks, "speed_max", number(t->speed_max), "run", run->id, "said",
-                   run->reason ? run->reason : "");
+  return json_pack(
+    "{s:f, s:I, s:o, s:o, s:i, s:o, s:s, s:s}", "dt", t->dt, "seed", (json_int_t)t->seed, "failed",
+    word_of(t->first), "time", json_out_number(t->time), "leaks", t->leaks, "speed_max",
+    json_out_number(t->speed_max), "run", run->id, "said", run->reason ? run->reason : "");
 }
 
 static json_t *trials_json(const struct stability *s, int method, int row)
@@ -44,14 +44,16 @@ static json_t *limit_json(const struct stability *s, int m)
 {
   const struct candidate_solver *c = &s->solver[m];
   const struct prediction *p = &c->predicted;
-  json_t *limit = json_pack(
-    "{s:s, s:o, s:o, s:o}", "solver", c->name, "dt_max", number(stable_dt(c)), "reason",
-    word_of(c->failed < HUGE_VAL ? c->reason : VERDICT_STABLE), "predicted", number(p->least));
+  json_t *limit =
+    json_pack("{s:s, s:o, s:o, s:o}", "solver", c->name, "dt_max", json_out_number(stable_dt(c)),
+              "reason", word_of(c->failed < HUGE_VAL ? c->reason : VERDICT_STABLE), "predicted",
+              json_out_number(p->least));
   json_object_set_new(limit, "predicted_by", p->by ? json_string(p->by) : json_null());
-  json_object_set_new(limit, "ratio", number(stable_dt(c) / p->least));
-  json_object_set_new(limit, "dt_failed", number(c->failed));
+  json_object_set_new(limit, "ratio", json_out_number(stable_dt(c) / p->least));
+  json_object_set_new(limit, "dt_failed", json_out_number(c->failed));
   json_object_set_new(limit, "leaks", json_integer(c->leaks));
-  json_object_set_new(limit, "speed_max", number(c->stable > 0 ? c->speed_max : (double)NAN));
+  json_object_set_new(limit, "speed_max",
+                      json_out_number(c->stable > 0 ? c->speed_max : (double)NAN));
   json_object_set_new(limit, "predictions", prediction_json(p));
   json_object_set_new(limit, "trials", trials_json(s, m, -1));
   return limit;
@@ -79,7 +81,7 @@ static json_t *cell_json(const struct stability *s, const struct trial *t)
 {
   return json_pack("{s:s, s:s, s:f, s:s, s:o, s:o, s:i}", "solver", s->solver[t->method].name,
                    "value", s->map.value[t->row], "dt", t->dt, "worst", verdict_words[t->verdict],
-                   "first", word_of(t->first), "time", number(t->time), "leaks", t->leaks);
+                   "first", word_of(t->first), "time", json_out_number(t->time), "leaks", t->leaks);
 }
 
 static json_t *map_json(const struct stability *s)
@@ -100,9 +102,10 @@ static json_t *map_json(const struct stability *s)
   for (int m = 0; m < s->num_solvers; m++)
     for (int row = 0; row < s->map.rows && !s->solver[m].refusal; row++) {
       const struct prediction p = predict_row(s, m, row);
-      json_array_append_new(lines, json_pack("{s:s, s:s, s:o, s:o}", "solver", s->solver[m].name,
-                                             "value", s->map.value[row], "dt", number(p.least),
-                                             "by", p.by ? json_string(p.by) : json_null()));
+      json_array_append_new(lines,
+                            json_pack("{s:s, s:s, s:o, s:o}", "solver", s->solver[m].name, "value",
+                                      s->map.value[row], "dt", json_out_number(p.least), "by",
+                                      p.by ? json_string(p.by) : json_null()));
     }
   return json_pack("{s:s, s:o, s:o, s:o, s:o}", "key", s->map.key, "values", values, "dts", dts,
                    "cells", cells, "predicted", lines);
@@ -116,19 +119,6 @@ static json_t *ignored_json(const struct stability *s)
   return list;
 }
 
-static status write_to(const char *path, const json_t *object)
-{
-  struct new_file file;
-  if (strcmp(path, "-") == 0) {
-    json_dumpf(object, stdout, JSON_INDENT(1));
-    return puts("") < 0 ? status_set(ERR_IO, "cannot write to standard output") : OK;
-  }
-  TRY(file_begin(&file, path));
-  json_dumpf(object, file.stream, JSON_INDENT(1));
-  fputc('\n', file.stream);
-  return file_commit(&file);
-}
-
 status stability_write(const struct stability *s, const char *also)
 {
   const struct path own = path_of("%s/stability.json", s->folder.text);
@@ -136,11 +126,7 @@ status stability_write(const struct stability *s, const char *also)
     json_pack("{s:s, s:o, s:o, s:o, s:f, s:I, s:o}", "scene", s->scene, "limits", limits_json(s),
               "map", map_json(s), "not_run", refused_json(s), "jitter", s->jitter, "seeds",
               (json_int_t)s->num_seeds, "ignored", ignored_json(s));
-  if (!object) return status_set(ERR_MEMORY, "out of memory");
-  status result = write_to(own.text, object);
-  if (result == OK && also) result = write_to(also, object);
-  json_decref(object);
-  return result;
+  return json_out_finish(object, own.text, also);
 }
 
 /* --- for people --- */

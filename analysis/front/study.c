@@ -398,17 +398,3 @@ status value_parse(const char *flag, const char *text, double *value)
   *value = one.value[0];
   return OK;
 }
-
-status study_sets(struct study_request *ask, int argc, char **argv)
-{
-  for (int i = 2; i < argc; i++) {
-    const char *value = strncmp(argv[i], "--set=", 6) == 0              ? argv[i] + 6
-                        : strcmp(argv[i], "--set") == 0 && i + 1 < argc ? argv[i + 1]
-                                                                        : NULL;
-    if (!value) continue;
-    if (!strchr(value, '=')) return user_error("--set: '%s' found, KEY=VALUE expected", value);
-    if (ask->num_sets == MOST_SETS) return user_error("--set: more than %d of them", MOST_SETS);
-    ask->set[ask->num_sets++] = (char *)value;
-  }
-  return OK;
-}

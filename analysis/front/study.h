@@ -105,7 +105,4 @@ status study_distance(const struct study *study, const struct queue *queue, int 
 status values_parse(const char *flag, const char *text, struct values *values);
 status value_parse(const char *flag, const char *text, double *value);
 
-/* The values of all --set, which may be given several times. ERR_USER. */
-status study_sets(struct study_request *ask, int argc, char **argv);
-
 #endif

@@ -27,36 +27,24 @@ static status parse(struct request *r, int argc, char **argv)
   return names == 1 ? OK : user_error("sweep needs a plan; 'sphbench list plans' lists them");
 }
 
-/* Seconds of the last run with the same arguments, by any build; < 0: it was never run. */
-static double known_time(const struct queue *queue, const struct run *run)
-{
-  for (int k = queue->journal.n - 1; k >= 0; k--) {
-    const struct journal_entry *e = &queue->journal.entry[k];
-    if (!strcmp(e->scene, run->argv[1]) && !strcmp(e->solver, run->argv[3]) &&
-        !strcmp(e->what, run->what))
-      return e->seconds;
-  }
-  return -1;
-}
-
 static void show_plan(const struct queue *queue)
 {
   double known = 0;
   int todo = 0, unknown = 0;
   for (int k = 0; k < queue->n; k++) {
     const struct run *run = &queue->run[k];
-    const double seconds = known_time(queue, run);
+    const double seconds = queue_known_time(queue, run);
     printf("%s  %s with %s (%s)%s%s", run->id, run->argv[1], run->argv[3], run->name.text,
            *run->what ? " " : "", run->what);
     if (run->finished)
       printf(": %s already\n", outcome_words[run->outcome]);
-    else if (seconds >= 0)
+    else if (seconds > 0)
       printf(": took %.1f s before\n", seconds);
     else
       printf("\n");
     todo += !run->finished;
-    unknown += !run->finished && seconds < 0;
-    known += run->finished || seconds < 0 ? 0 : seconds;
+    unknown += !run->finished && !(seconds > 0);
+    known += run->finished ? 0 : seconds;
   }
   printf("%d runs, %d to do; %.0f s of computing for those known, %d were never run\n", queue->n,
          todo, known, unknown);

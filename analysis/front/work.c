@@ -50,18 +50,6 @@ static void fail(struct work *w, status result)
 
 /* --- starting --- */
 
-/* Seconds that the same arguments took with another build, 0 if they were never run. */
-static double expected_time(const struct queue *queue, const struct run *run)
-{
-  for (int k = queue->journal.n - 1; k >= 0; k--) {
-    const struct journal_entry *e = &queue->journal.entry[k];
-    if (!strcmp(e->scene, run->argv[1]) && !strcmp(e->solver, run->argv[3]) &&
-        !strcmp(e->what, run->what))
-      return e->seconds;
-  }
-  return 0;
-}
-
 static status start(struct work *w, struct child *child, int number)
 {
   struct run *run = &w->queue->run[number];
@@ -79,8 +67,8 @@ static status start(struct work *w, struct child *child, int number)
   unlink(frames.text);
   const struct process process = {
     .argv = argv, .log = log.text, .one_thread = 1, .most_memory = w->queue->memory};
-  *child =
-    (struct child){.run = number, .begun = clock_now(), .expected = expected_time(w->queue, run)};
+  *child = (struct child){
+    .run = number, .begun = clock_now(), .expected = queue_known_time(w->queue, run)};
   const status started = process_start(&process, &child->pid);
   if (started != OK) child->pid = 0;
   free(argv);
@@ -255,7 +243,7 @@ static void show(struct work *w, const char *const *notes)
   for (int k = 0; k < w->queue->n; k++) {
     const struct run *run = &w->queue->run[k];
     if (!notes[k]) continue; /* was finished before */
-    const double known = expected_time(w->queue, run);
+    const double known = queue_known_time(w->queue, run);
     const double whole = run->finished ? run->seconds : known > 0 ? known : guess;
     const double so_far = run->finished ? whole : running_for(w, k);
     if (!run->finished && so_far > 0) name = notes[k];
