@@ -325,6 +325,52 @@ struct reference_motion {
 };
 struct reference_motion reference_two_particle_motion(const struct reference_orbit *o, double t);
 
+/* ---- Referees: systems solved by other people's programs (algebra.c, nonlinear.c) ---------------
+ */
+
+/* y = A x for any x[n]; A symmetric and positive definite. */
+struct reference_system {
+  int n;
+  void (*apply)(const double *x, double *y, void *user);
+  void *user;
+};
+
+/* x[n] = A^-1 b by LAPACK's Cholesky factors of the matrix written out, n <= 5000, with one step of
+ * refinement: what an iteration on the same system converges to.
+ * asymmetry: largest |A_ij - A_ji| over the largest |A_ij|; residual: |b - A x|/|b|.
+ * Fails: n out of range, asymmetry >= 1e-6; not positive definite; no memory. */
+struct reference_dense {
+  double asymmetry, residual;
+};
+enum reference_status reference_dense_solve(const struct reference_system *s, const double *b,
+                                            double *x, struct reference_dense *quality);
+
+/* The same by SUNDIALS' SUNLinSol_PCG from x as it is, with Jacobi's preconditioner, until |r| <=
+ * tolerance |b|. Fails: not converged (x and iterations are what was reached); no memory. */
+struct reference_pcg {
+  const double *diagonal; /* [n] */
+  double tolerance;
+  int max_iterations, iterations; /* iterations: those used */
+};
+enum reference_status reference_pcg_solve(const struct reference_system *s, const double *b,
+                                          double *x, struct reference_pcg *how);
+
+/* By SUNDIALS' KINSOL from x[n] as it is, in units in which x and f are of order 1:
+ * x = f(x) by iteration with Anderson's acceleration over `history` steps, until the last change is
+ * below tolerance; f(x) = 0 by Newton's method with a line search and GMRES over `history` vectors,
+ * until max |f| is. Fails: not converged (x is what was reached). */
+struct reference_equations {
+  int n;
+  void (*function)(const double *x, double *f, void *user);
+  void *user;
+  double tolerance;
+  int max_iterations, history;
+};
+enum reference_status reference_fixed_point(const struct reference_equations *e, double *x,
+                                            int *iterations);
+enum reference_status reference_newton_krylov(const struct reference_equations *e, double *x,
+                                              int *iterations);
+
 /* ---- Series and tables (series.c, tables.c, table_data.c) ---------------------------------------
  */
 
