@@ -3,6 +3,8 @@
  * hold (Newton with Cholesky's factors in long double). tests/twin/test_known_sisph.c holds the
  * solver itself against the same fixtures. */
 #include "sisph_objective.h"
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multimin.h>
 
 static const struct fixture {
   const char *name;
@@ -65,6 +67,54 @@ static void test_gradient(void **state)
   }
 }
 
+/* ---- GSL's minimiser of Psi itself, in units of dx; Psi is flat to rounding before x is found */
+
+static double psi_of(const gsl_vector *x, void *block)
+{
+  const struct block *b = block;
+  double at[BLOCK_NUMBERS];
+  for (int k = 0; k < BLOCK_NUMBERS; k++) at[k] = gsl_vector_get(x, k) * b->dx;
+  return block_psi(b, at);
+}
+static void gradient_of(const gsl_vector *x, void *block, gsl_vector *out)
+{
+  const struct block *b = block;
+  double at[BLOCK_NUMBERS], gradient[BLOCK_NUMBERS];
+  for (int k = 0; k < BLOCK_NUMBERS; k++) at[k] = gsl_vector_get(x, k) * b->dx;
+  block_gradient(b, at, gradient, NULL);
+  for (int k = 0; k < BLOCK_NUMBERS; k++)
+    gsl_vector_set(out, k, gradient[k] * b->m / sq(b->h) * b->dx);
+}
+static void both_of(const gsl_vector *x, void *block, double *psi, gsl_vector *out)
+{
+  *psi = psi_of(x, block);
+  gradient_of(x, block, out);
+}
+
+static void test_descent(void **state)
+{
+  (void)state;
+  static struct block b;
+  double at[BLOCK_NUMBERS];
+  int steps = 0;
+  block_read(&b, "B0", SISPH_B0, 2);
+  gsl_multimin_function_fdf psi = {psi_of, gradient_of, both_of, BLOCK_NUMBERS, &b};
+  gsl_multimin_fdfminimizer *search =
+    gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, BLOCK_NUMBERS);
+  gsl_vector *start = gsl_vector_alloc(BLOCK_NUMBERS);
+  for (int k = 0; k < BLOCK_NUMBERS; k++) gsl_vector_set(start, k, b.start[k] / b.dx);
+  gsl_multimin_fdfminimizer_set(search, &psi, start, 0.01, 0.1);
+  while (steps < 5000 && gsl_multimin_fdfminimizer_iterate(search) == GSL_SUCCESS) steps++;
+  for (int k = 0; k < BLOCK_NUMBERS; k++) at[k] = gsl_vector_get(search->x, k) * b.dx;
+  const double least = block_psi(&b, b.least), above = block_psi(&b, at) / least - 1;
+  print_message("GSL's bfgs2: %d steps, Psi above the least by %.1e of it, off by %.1e dx\n", steps,
+                above, largest(at, b.least, b.dx));
+  gsl_vector_free(start);
+  gsl_multimin_fdfminimizer_free(search);
+  close_to("Psi", above, 0, 1e-9);
+  close_to("minimiser", largest(at, b.least, b.dx), 0, 1e-5);
+}
+
 /* A stiff one defeats the fixed point, which must say so, and not Newton's method. */
 static void test_stiff(void **state)
 {
@@ -91,6 +141,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_minimisers),
     cmocka_unit_test(test_gradient),
+    cmocka_unit_test(test_descent),
     cmocka_unit_test(test_stiff),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
