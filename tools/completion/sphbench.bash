@@ -21,7 +21,7 @@ _sphbench() {
       run | speed) offer "$("$command" "$verb" --help 2>/dev/null | awk '/^  -/ {print $1}')" ;;
       sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin --emit
         --batch --manifest --task' ;;
-      compare) offer '--junit --json' ;;
+      compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
       *) offer '--json --plugin --backend --dim --precision' ;;
