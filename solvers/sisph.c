@@ -449,6 +449,17 @@ static double effective_modulus(const state *s)
   return (double)s->K * (1 + (double)s->energy) * unit * unit * mode * lattice_spread(kernel, dx);
 }
 
+/* The largest beta with which the stiffest mode's factor 1 - (1 + s)/(1 + S/beta) is above -1,
+ *   s = dt^2 K/rho_0 (m/rho_0)^2 |sum_j sin(k.x_ij) grad W_ij|^2. */
+static double largest_beta(const state *s)
+{
+  const double dx = (double)s->dx, V = (double)(s->mass / s->rho0), dt = (double)s->dt;
+  const struct kernel *kernel = &s->nb.kernel;
+  const double stiffest = lattice_stiffest(kernel, dx) * lattice_spread(kernel, dx);
+  const double most = dt * dt * (double)(s->K / s->rho0) * V * V * stiffest;
+  return most > 1 ? 2 * (double)s->S / (most - 1) : HUGE_VAL;
+}
+
 /* A stiffness that was asked for and that the iterations do not reach, and a fluid that the default
  * makes so soft that its own speed would compress it by a tenth. */
 static void warn(const void *self, double speed, char *text, size_t size)
@@ -458,6 +469,11 @@ static void warn(const void *self, double speed, char *text, size_t size)
   const double enough = 1 - pow(1 - 3 / (N + 3.0), N), part = resolved(s, N);
   const double modulus = part * effective_modulus(s);
   const double squeeze = (double)s->rho0 * speed * speed / (2 * modulus);
+  if (s->acceleration == (real)PLAIN && (double)s->beta > largest_beta(s)) {
+    snprintf(text, size, "beta %g is beyond %.3g, where iterations diverge", (double)s->beta,
+             largest_beta(s));
+    return;
+  }
   if (part >= enough || (!s->given && squeeze < 0.1)) return;
   if (s->given)
     snprintf(text, size,

@@ -62,7 +62,7 @@ static inline double lattice_stiffest(const struct kernel *kernel, double dx)
 /* One mode exp(i k.x), k = angle/dx [DIM] along an axis or a diagonal, of
  *   L v_i = 2 sum_j |W'_ij|/r_ij (v_i - v_j)               if full
  *         = 2 (d+2) sum_j |W'_ij|/r_ij e e.(v_i - v_j)     if not:
- * its largest eigenvalue [1/m^(d+2)], that of motion along k or across. */
+ * its largest eigenvalue [1/m^(d+2)], that of motion along k. */
 static inline double lattice_friction(const struct kernel *kernel, double dx,
                                       const double angle[DIM], int full)
 {
@@ -83,9 +83,7 @@ static inline double lattice_friction(const struct kernel *kernel, double dx,
           along += pull * phase * phase / (k2 * r2);
         }
       }
-  if (full || !(k2 > 0)) return all;
-  const double across = (all - along) / (DIM - 1);
-  return (DIM + 2) * (along > across ? along : across);
+  return full ? all : (DIM + 2) * along;
 }
 
 /* The largest of these: forces nu V L v of old velocities, V the volume of a particle, are stable

@@ -27,6 +27,7 @@ SLIPS = (
     ("stress-point", ("--set", "kappa=3"), ("kappa 3",)),
     ("flip", ("--set", "kappa=3"), ("kappa 3",)),
     ("sisph", ("--set", "K=1e9"), ("S = ", "10 iterations", "K = 1e+09")),
+    ("sisph", ("--set", "K=1e9", "--set", "beta=9"), ("beta 9", "diverge")),
     ("sisph", ("--set", "mu=1e6"), ("S = ", "10 iterations")),
     ("sisph", ("--set", "K=1e9", "--set", "acceleration=anderson"), ("S = ",)),
     ("sisph", ("--dt", "0.05", "--set", "gravity=1"), ("S = ", "so soft")),
