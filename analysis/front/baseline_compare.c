@@ -192,6 +192,6 @@ status baseline_compare(const json_t *runs, const json_t *baseline, struct compa
       TRY(miss(out, key, "run", NAN, "the run is missing"));
   }
   json_object_foreach((json_t *)runs, key, run) out->extra += json_object_get(known, key) == NULL;
-  qsort(out->row, (size_t)out->n, sizeof *out->row, worst_first);
+  if (out->n > 0) qsort(out->row, (size_t)out->n, sizeof *out->row, worst_first);
   return OK;
 }
