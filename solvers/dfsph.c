@@ -38,8 +38,8 @@ enum { LEAST_DENSITY = 2, LEAST_DIVERGENCE = 1 };
 #define PARAMS(P)                                                                                  \
   P(tolerance, 1e-4, 0, 1, "1", "mean relative density error at which to stop")                    \
   P(divergence_tolerance, 1e-4, 0, 1, "1", "mean relative density change per step to stop at")     \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations of either solver")             \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations of each; 0: by tolerance")             \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations of either solver")           \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "number of iterations of each; 0: by tolerance")           \
   P(relaxation, 0, 0, 2, "1", "factor on kappa in an iteration; 0: 1.4/theta_max of the lattice")  \
   P(clamp, CLAMPED, 0, 2, "clamped|free|each", "sum of kappa >= 0, any, or each iteration's >= 0") \
   P(density_solver, ON, 0, 1, "off|on", "the constant-density solver")                             \

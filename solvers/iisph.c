@@ -36,14 +36,15 @@ enum { CLAMPED, FREE };
 enum { OWN, MIRRORED };
 enum { LEAST_ITERATIONS = 2 };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                      \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(relaxation, 0, 0, 2, "1", "omega of the Jacobi iteration; 0: 0.5 or what the lattice bears")   \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")            \
-  P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                               \
-  P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                      \
+#define PARAMS(P)                                                                                \
+  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                    \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                          \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                          \
+    "number of iterations, whatever the error; 0: by tolerance")                                 \
+  P(relaxation, 0, 0, 2, "1", "omega of the Jacobi iteration; 0: 0.5 or what the lattice bears") \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")          \
+  P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                             \
+  P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                    \
     "walls push with p_i alone, or with p_b = p_i as well")
 
 #define FIELDS(F)                                                                                  \

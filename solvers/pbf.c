@@ -27,14 +27,15 @@
 
 enum { CLAMPED, FREE };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                      \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(epsilon, 0.4, 0, 1e6, "1/dx^2", "relaxation epsilon of Eq. (11)")                              \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "multipliers that only repel, or also attract")          \
-  P(scorr_k, 0, 0, 10, "dx^2", "strength k of the artificial pressure, Eq. (13); 0: none")         \
-  P(scorr_n, 4, 1, 16, "1", "its exponent n, an integer")                                          \
+#define PARAMS(P)                                                                          \
+  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")              \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                    \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                    \
+    "number of iterations, whatever the error; 0: by tolerance")                           \
+  P(epsilon, 0.4, 0, 1e6, "1/dx^2", "relaxation epsilon of Eq. (11)")                      \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "multipliers that only repel, or also attract")  \
+  P(scorr_k, 0, 0, 10, "dx^2", "strength k of the artificial pressure, Eq. (13); 0: none") \
+  P(scorr_n, 4, 1, 16, WHOLE, "its exponent n, an integer")                                \
   P(scorr_dq, 0.2, 0, 0.9, "R", "its reference distance dq")
 
 #define FIELDS(F)                                                                                \

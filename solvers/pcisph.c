@@ -38,15 +38,16 @@ enum { CLAMPED, FREE };
 enum { MEAN, LARGEST };
 enum { NONE, MIRRORED };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "relative compression at which to stop")                           \
-  P(measure, MEAN, 0, 1, "mean|largest", "of which the tolerance is meant")                        \
-  P(min_iterations, 3, 0, 1e6, "1", "least number of iterations")                                  \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(relaxation, 0, 0, 4, "1", "factor on the paper's delta; 0: 2.8/theta_max of the lattice")      \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "p >= 0, or also tension")                               \
-  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")    \
+#define PARAMS(P)                                                                               \
+  P(tolerance, 1e-3, 0, 1, "1", "relative compression at which to stop")                        \
+  P(measure, MEAN, 0, 1, "mean|largest", "of which the tolerance is meant")                     \
+  P(min_iterations, 3, 0, 1e6, WHOLE, "least number of iterations")                             \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                         \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                         \
+    "number of iterations, whatever the error; 0: by tolerance")                                \
+  P(relaxation, 0, 0, 4, "1", "factor on the paper's delta; 0: 2.8/theta_max of the lattice")   \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "p >= 0, or also tension")                            \
+  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's") \
   P(warm_start, 0, 0, 1, "1", "part of its last p that a step starts from")
 
 #define FIELDS(F)                                                                                  \

@@ -65,10 +65,10 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
 #define PARAMS(P)                                                                                \
   P(energy, B0, 0, 2, "B0|B1|B2", "bulk energy B(lambda), Eqs. (15), (16), (17)")                \
   P(form, EQ_14, 0, 1, "eq12|eq14", "non-conservative or conservative substitution")             \
-  P(fixed_iterations, 0, 0, 1e6, "1",                                                            \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                          \
     "number of iterations N; 0: by tolerance, or 10 without one")                                \
   P(tolerance, 0, 0, 1, "dx", "eta: r.m.s. of h^2/m grad Psi at which to stop; 0: none")         \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of iterations with a tolerance")          \
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of iterations with a tolerance")        \
   P(K, 0, 0, 1e15, "Pa", "bulk modulus; 0: from mu, or 1e6 Pa if that is 0, too")                \
   P(mu, 0, 0, 1e15, "J", "energy per particle K dx^d (2-D: J/m); 0: from K")                     \
   P(S, 0, 0, 0, "1", "reported: sum of A+ in Eq. (14) on a full lattice; follows from K")        \
@@ -82,7 +82,7 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
   P(beta, 1, 0.1, 10, "1", "what S is divided by in the diagonal; 3 converges 2.8 times faster") \
   P(acceleration, PLAIN, 0, 2, "plain|chebyshev|anderson", "Eqs. (14), (22), (21)")              \
   P(spectral_radius, 0, 0, 0.9999, "1", "spectral radius rho of Eq. (23); 0: matched to S")      \
-  P(history, 1, 1, 5, "1", "n of Eq. (21), an integer")                                          \
+  P(history, 1, 1, 5, WHOLE, "n of Eq. (21), an integer")                                        \
   P(safeguard, GUARD_RESIDUAL, 0, 2, "none|psi|residual", "what an accelerated step may not raise")
 
 #define HISTORY(F, k)                                                          \

@@ -100,7 +100,8 @@ static void put_table(struct h5 *h, const char *path, const struct fact_table *t
     const hid_t space = H5Dget_space(data);
     const long long there = H5Sget_simple_extent_npoints(space);
     H5Sclose(space);
-    h5_append(h, data, there, table->rows - there, H5T_NATIVE_DOUBLE, column->values + there);
+    if (table->rows > there)
+      h5_append(h, data, there, table->rows - there, H5T_NATIVE_DOUBLE, column->values + there);
     H5Dclose(data);
   }
   H5Gclose(group);

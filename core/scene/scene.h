@@ -30,7 +30,7 @@ extern "C" {
   P(tension, 0, 0, 1e9, "N/m", "surface tension")                                               \
   P(tension_form, 0, 0, 1, "akinci|he", "cohesion and normals, or energy of the surface")       \
   P(jitter, 0, 0, 1, "dx", "largest random displacement at the start, per axis")                \
-  P(samples, 200, 1, 1e6, "1", "samples of the metrics over the run, at most one per step")
+  P(samples, 200, 1, 1e6, WHOLE, "samples of the metrics over the run, at most one per step")
 
 enum { WALLS_LATTICE, WALLS_AKINCI };
 
