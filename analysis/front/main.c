@@ -31,6 +31,8 @@ static const char usage[] =
   "         [--junit FILE] [--json FILE]\n"
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
+  "  frames FILE.vtkhdf        its frames as PNG, and as a film where ffmpeg is there\n"
+  "         [-o DIR] [--colour speed|p] [--film FILE.mp4] [--quiet]\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
   "  show NAME [--json]        a solver, scene, metric or figure\n"
   "  speed [--json FILE]       time per particle of search, iteration and step\n"
@@ -54,9 +56,9 @@ static const char usage[] =
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",        "speed",   "list",     "figure",
-                                    "report", "doctor",      "compare", "bless",    "precision",
-                                    "sweep",  "convergence", "profile", "stability"};
+static const char *const verbs[] = {"run",    "show",        "speed",   "list",      "figure",
+                                    "report", "doctor",      "compare", "bless",     "precision",
+                                    "sweep",  "convergence", "profile", "stability", "frames"};
 static const char *const later[] = {"claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
 
@@ -117,6 +119,7 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "figure") == 0) return verb_figure(argc, argv);
   if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
   if (strcmp(verb, "sweep") == 0) return verb_sweep(argc, argv);
+  if (strcmp(verb, "frames") == 0) return verb_frames(argc, argv);
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
   if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);

@@ -2,6 +2,7 @@
 import json
 import subprocess
 import sys
+import time
 
 import cli_case
 
@@ -45,6 +46,12 @@ class Case(cli_case.Case):
     def task(self, number, *words, **more):
         return self.call("sweep", "--manifest", "job/manifest.json", "--task", number, "--quiet",
                          *words, **more)
+
+    def wait_until(self, is_there):
+        until = time.monotonic() + cli_case.LONGEST
+        while not is_there():
+            self.assertLess(time.monotonic(), until, "waited in vain")
+            time.sleep(0.01)
 
     def gathered(self):
         """After the batch: a plain sweep finds all finished, and changes no file of a run."""
