@@ -125,6 +125,16 @@ fluid:
 
 
 class Extreme(cli_case.Case):
+    def test_a_particle_far_away_and_one_nowhere(self):
+        for ending in ("", "-3d"):
+            scene = cli_case.ROOT / f"benchmarks/extreme-far{ending}.yaml"
+            facts, file = self.run_scene(scene, "pbf")
+            self.assertEqual(facts["particles"], 126 if ending else 101)
+            self.assertEqual(numpy.abs(cli_case.frame(file, 0)("position")).max(), 1e30)
+            scene = cli_case.ROOT / f"benchmarks/extreme-nan{ending}.yaml"
+            _, err = self.call("run", scene, "--solver", "pbf", code=2)
+            self.one_sentence(err, "fluid[2].particle", ".nan")
+
     def test_a_table(self):
         folder = self.dir / "plans"
         os.mkdir(folder)
