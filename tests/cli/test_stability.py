@@ -1,6 +1,7 @@
 """Runs judged, and the largest stable time step, through the command line."""
 import json
 import os
+import subprocess
 import unittest
 
 import numpy
@@ -154,6 +155,13 @@ class Extreme(cli_case.Case):
         self.assertEqual(none["status"], "unable")
         self.assertIn("fluid particle 0 and fluid particle 4", none["reason"])
         self.assertIn("r/stability/extreme.json", self.files())
+        small = self.dir / "small.json"
+        subprocess.run([cli_case.ROOT / "tools/stability-page", "--condense",
+                        self.dir / "r/stability/extreme.json", small], check=True)
+        cases = json.loads(small.read_text())["cases"]
+        states = {case.split()[0]: runs["2d f64"]["pbf"][0] for case, runs in cases.items()}
+        self.assertEqual(states, {"free-fall": "ok", "near": "unable",
+                                  "compressed": f"diverged ({bad['failed']})"})
 
 
 if __name__ == "__main__":
