@@ -38,8 +38,8 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
     "pressure gradient: Eq. (16) or the adjoint of Eq. (11)")                                     \
   P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without")   \
   P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                            \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                         \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                       \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")
 
 #define PARAMS_SC(P)                                                                       \
   PARAMS(P)                                                                                \

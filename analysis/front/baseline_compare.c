@@ -270,6 +270,6 @@ status baseline_compare(const json_t *runs, const json_t *baseline, struct compa
       TRY(miss(out, key, "run", NAN, "the run is missing"));
   }
   out->extra += (int)json_object_size(runs) - matched;
-  qsort(out->row, (size_t)out->n, sizeof *out->row, worst_first);
+  if (out->n > 0) qsort(out->row, (size_t)out->n, sizeof *out->row, worst_first);
   return OK;
 }

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,14 @@
 #include <unistd.h>
 
 enum { NOT_FOUND = 127 }; /* as in the shell */
+
+static void stay_on(const int *cores, int n)
+{
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (int k = 0; k < n; k++) CPU_SET(cores[k], &set);
+  if (n > 0 && sched_setaffinity(0, sizeof set, &set) == 0) setenv("OMP_PROC_BIND", "true", 1);
+}
 
 /* Ends with its parent, at once: what lived on for a while could write over the results of the one
  * that is started in its place. */
@@ -31,6 +40,8 @@ static void become(const struct process *p, pid_t parent)
     setenv("OMP_NUM_THREADS", "1", 1);
     setenv("OMP_PROC_BIND", "false", 1); /* or all children would sit on the first core */
   }
+  setenv("OMP_WAIT_POLICY", "passive", 0); /* spinning threads starve those of other runs */
+  stay_on(p->cores, p->num_cores);
   if (p->most_memory > 0) { /* of data, not of addresses, of which a GPU's driver takes many */
     const rlim_t most = (rlim_t)p->most_memory << 20;
     setrlimit(RLIMIT_DATA, &(struct rlimit){most, most});
