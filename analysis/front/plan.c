@@ -1,6 +1,7 @@
 #include "plan.h"
 
 #include <cyaml/cyaml.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,6 +49,8 @@ static const cyaml_schema_field_t plan_fields[] = {
   LIST(plan, runs, num_runs, runs_value), CYAML_FIELD_END};
 static const cyaml_schema_value_t plan_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct plan, plan_fields)};
+
+enum { MOST_RUNS = 10000 }; /* of a plan: more is a slip, not a plan */
 
 /* --- where they are --- */
 
@@ -203,15 +206,30 @@ static int is_known(const struct names *solvers, const char *name)
   return 0;
 }
 
+/* Of one solver. */
+static status count_combinations(const struct plan *plan, unsigned number, double others,
+                                 unsigned long *combinations)
+{
+  const struct plan_runs *runs = &plan->runs[number - 1];
+  const struct path at = path_of("runs[%u].product", number);
+  double count = 1;
+  for (unsigned k = 0; k < runs->num_product; k++) count *= runs->product[k].num_values;
+  *combinations = (unsigned long)fmin(count, MOST_RUNS);
+  if (count + others <= MOST_RUNS) return OK;
+  return yaml_source_refuse(plan->source, at.text,
+                            "%g runs found, allowed are at most %d in a plan", count + others,
+                            MOST_RUNS);
+}
+
 static status expand_runs(const struct plan *plan, unsigned number, const struct names *solvers,
                           struct queue *queue)
 {
   const struct plan_runs *runs = &plan->runs[number - 1];
   const unsigned n = runs->num_solvers ? runs->num_solvers : (unsigned)solvers->n;
   char **names = runs->num_solvers ? runs->solvers : solvers->name;
-  unsigned long combinations = 1;
-  for (unsigned k = 0; k < runs->num_product; k++) combinations *= runs->product[k].num_values;
   for (unsigned s = 0; s < n; s++) {
+    unsigned long combinations;
+    TRY(count_combinations(plan, number, queue->n, &combinations));
     if (!is_known(solvers, names[s])) {
       const struct path at = path_of("runs[%u].solvers", number);
       const char *near = nearest_name(names[s], (const char *const *)solvers->name, solvers->n);

@@ -22,9 +22,12 @@ static void stay_on(const int *cores, int n)
   if (n > 0 && sched_setaffinity(0, sizeof set, &set) == 0) setenv("OMP_PROC_BIND", "true", 1);
 }
 
-static void become(const struct process *p)
+/* Ends with its parent, at once: what lived on for a while could write over the results of the one
+ * that is started in its place. */
+static void become(const struct process *p, pid_t parent)
 {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) return; /* it was killed before that */
   const int log = open(p->log ? p->log : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (p->log || p->output > 0) dup2(log, STDERR_FILENO);
   if (p->output > 0)
@@ -49,12 +52,13 @@ static void become(const struct process *p)
 
 status process_start(const struct process *process, pid_t *child)
 {
+  const pid_t parent = getpid();
   fflush(NULL);
   *child = fork();
   if (*child < 0)
     return status_set(ERR_IO, "cannot start '%s': %s", process->argv[0], strerror(errno));
   if (*child == 0) {
-    become(process);
+    become(process, parent);
     fprintf(stderr, "cannot start '%s': %s\n", process->argv[0], strerror(errno));
     _exit(NOT_FOUND); /* the child's way out: returning would run the parent's code twice */
   }

@@ -23,7 +23,7 @@ _sphbench() {
       sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin --emit
         --batch --manifest --task --timed --threads' ;;
       frames) offer '-o --colour --film --quiet' ;;
-      compare) offer '--junit --json' ;;
+      compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
       *) offer '--json --plugin --backend --dim --precision' ;;
