@@ -113,6 +113,9 @@ static status conclude(const struct queue *queue, int quiet, int whole)
   if (count[OUTCOME_CRASHED])
     return status_set(ERR_RUN, "%d of %d runs crashed; the journal and the logs say how",
                       count[OUTCOME_CRASHED], ended);
+  if (count[OUTCOME_INTERRUPTED])
+    return status_set(ERR_RUN, "%d of %d runs were stopped from outside; start the sweep again",
+                      count[OUTCOME_INTERRUPTED], ended);
   return OK;
 }
 
