@@ -2,6 +2,7 @@
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import time
@@ -18,7 +19,8 @@ DIVERGES = """name: mixed
 about: one that ends well, one that diverges, one that the solver cannot do
 runs:
   - {scene: free-fall, solvers: [pbf], t_end: 0.01, frames: 1}
-  - {scene: rotating-patch, solvers: [dfsph], t_end: 1, spacing: 0.1, set: [relaxation=2, clamp=free]}
+  - {scene: rotating-patch, solvers: [dfsph], t_end: 1, spacing: 0.1,
+     set: [relaxation=2, clamp=free]}
   - {scene: normal-impact, solvers: [pbf]}
 """
 
@@ -80,6 +82,51 @@ class States(cli_case.Case):
         self.assertEqual(self.states()[1], ("interrupted", "ended by signal 9 (Killed)"))
         out, _ = self.call("sweep", "p.yaml", "--results", "r", "--dry-run")
         self.assertIn("2 runs, 1 to do", out)
+
+
+class Estimates(cli_case.Case):
+    """--dry-run: what the runs of a plan will take."""
+
+    def dry_run(self, runs):
+        (self.dir / "p.yaml").write_text(f"name: p\nabout: p\nruns:\n  - {runs}\n")
+        return self.call("sweep", "p.yaml", "--results", "r", "--jobs", "2", "--dry-run")[0]
+
+    def facts(self, name):
+        path, = (self.dir / "r/runs").glob(f"{name}.json")
+        return json.loads(path.read_text())
+
+    def test_time_and_memory(self):
+        small = "{scene: rotating-patch, solvers: [pbf], spacing: 0.01, t_end: 0.05, frames: 1}"
+        large = small.replace("0.01,", "0.002,").replace("0.05", "0.01")
+        words = self.dry_run(large).splitlines()
+        self.assertIn("1 runs, 1 to do", words[1])
+        self.dry_run(small)
+        self.call("sweep", "p.yaml", "--results", "r", "--quiet")
+        facts = self.facts("*")
+        self.assertIn(": ok already", self.dry_run(small))
+        line, summary = self.dry_run(large).splitlines()
+        said = re.search(r": about (\S+) s, about (\S+) MiB$", line)
+        seconds, mebibytes = map(float, said.groups())
+        self.call("sweep", "p.yaml", "--results", "r", "--quiet")
+        found = self.facts(line.split()[0])
+        rate = ((facts["timing"]["total"] - facts["timing"]["output"]) / facts["steps"]
+                / facts["particles"])
+        expected = 0.1 + rate * found["particles"] * found["steps"]
+        self.assertAlmostEqual(seconds / expected, 1, delta=0.06)  # two digits
+        self.assertGreater(found["particles"], 20 * facts["particles"])
+        peak = found["memory"]["peak_rss_bytes"] / 2**20
+        self.assertGreater(peak, mebibytes / 1.5)
+        self.assertLess(peak, mebibytes * 1.5)
+        at_once = float(re.search(r"on 2; at most about (\S+) MiB at once$", summary).group(1))
+        self.assertAlmostEqual(at_once / (2 * mebibytes), 1, delta=0.01)
+        again = self.dry_run(large.replace("t_end", "set: [samples=200], t_end"))
+        self.assertNotIn("took", again)
+        self.call("sweep", "p.yaml", "--results", "r", "--quiet")
+        self.assertRegex(self.call("sweep", "p.yaml", "--results", "r", "--fresh", "--dry-run")[0],
+                         r": took \S+ s, about")
+
+    def test_refused(self):
+        self.assertIn(": refused", self.dry_run("{scene: normal-impact, solvers: [pbf]}"))
 
 
 class Progress(cli_case.Case):
