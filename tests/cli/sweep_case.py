@@ -32,9 +32,10 @@ class Case(cli_case.Case):
         (self.dir / "tiny.yaml").write_text(PLAN)
 
     def journal(self, results="r"):
-        """The lines of the journal and of its parts."""
-        return [json.loads(line) for path in sorted((self.dir / results).glob("journal*.jsonl"))
-                for line in path.read_text().splitlines()]
+        """The lines of the journal and of its parts, of runs that came to an end."""
+        lines = [json.loads(line) for path in sorted((self.dir / results).glob("journal*.jsonl"))
+                 for line in path.read_text().splitlines()]
+        return [line for line in lines if line["status"] != "interrupted"]
 
     def parts(self, results="r"):
         return sorted((self.dir / results).glob("journal-*.part.jsonl"))
