@@ -48,9 +48,16 @@ void run_release(struct run *run);
 /* Open the journal of `results`, making the folder. ERR_IO, ERR_USER. */
 status queue_open(struct queue *queue, const char *results);
 
+/* The same for one of several processes that work into `results` at once; `part` names it. */
+status queue_open_part(struct queue *queue, const char *results, const char *part);
+
 /* Add a request, or find the one that is the same; its number in *number. ERR_USER: its variant is
  * not built; ERR_IO, ERR_MEMORY. */
 status queue_add(struct queue *queue, const struct run_request *request, int *number);
+
+/* Add the run of these arguments: argv [argc], as struct run has them, copied. ERR_USER, ERR_IO,
+ * ERR_MEMORY. */
+status queue_add_arguments(struct queue *queue, const char *const *argv, int argc, int *number);
 
 /* Carry out what is not finished, up to `jobs` at once. ERR_RUN: stopped by Ctrl-C or SIGTERM
  * (after the children stopped); ERR_IO. A run that fails is no error here but an outcome. */
@@ -58,6 +65,9 @@ status queue_work(struct queue *queue);
 
 /* Seconds that the last run with the same arguments took, by any build; 0: it was never run. */
 double queue_known_time(const struct queue *queue, const struct run *run);
+
+/* That, or the mean of the queue's finished runs, or 10 s where there is none. */
+double queue_expected_time(const struct queue *queue, const struct run *run);
 
 /* The file of a run: suffix "json", "vtkhdf" or "log". */
 struct path run_file(const char *results, const char *id, const char *suffix);
