@@ -12,6 +12,7 @@
  * expand beyond. */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+#include <stdio.h>
 
 #define DIFFERENCES                                                                                \
   "relaxation: kappa of an iteration is multiplied by 1.4/theta_max (0.7/theta_max if clamp = "    \
@@ -224,6 +225,17 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* Beyond 2/theta_max an iteration makes the stiffest mode worse. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double most = 2 / lattice_stiffest(&s->nb.kernel, (double)s->dx);
+  (void)speed;
+  if (s->clamp != (real)EACH && (double)s->theta > most)
+    snprintf(text, size, "relaxation %g is beyond %.3g = 2/theta_max, where iterations diverge",
+             (double)s->theta, most);
+}
+
 /* New particles have neither alpha nor a list yet. */
 static status changed(struct run *run, void *self)
 {
@@ -270,4 +282,5 @@ const struct solver solver_dfsph = {
   .max_dt = NULL,
   .uses = NULL,
   .stop = NULL,
+  .warn = warn,
 };

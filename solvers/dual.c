@@ -174,6 +174,12 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static status step_sa(struct run *run, void *s) { return advance(run, (state *)s, project_sa); }
 static status step_sb(struct run *run, void *s) { return advance(run, (state *)s, project_sb); }
 static status step_sc(struct run *run, void *s) { return advance(run, (state *)s, project_sc); }
@@ -190,7 +196,7 @@ static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD
     .can = DOES | (also_can), .params = the_params, .num_params = COUNT(the_params),        \
     .fields = the_fields, .num_fields = COUNT(the_fields), .state_size = sizeof(state),     \
     .start = start, .step = the_step, .project = the_project, .max_dt = NULL, .uses = uses, \
-    .stop = NULL                                                                            \
+    .stop = NULL, .warn = warn                                                              \
   }
 
 const struct solver solver_dual_sa =

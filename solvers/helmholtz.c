@@ -303,6 +303,12 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -330,4 +336,5 @@ const struct solver solver_helmholtz = {
   .max_dt = NULL,
   .uses = NULL,
   .stop = NULL,
+  .warn = warn,
 };

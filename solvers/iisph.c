@@ -15,6 +15,7 @@
  * motion grows, at any tolerance and dt (0.4 sqrt(g H) after 1 s against 0.04; free diverges). */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+#include <stdio.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -188,6 +189,17 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* Beyond 2/theta_max an iteration makes the stiffest mode worse. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double most = 2 / lattice_stiffest(&s->nb.kernel, (double)s->dx);
+  (void)speed;
+  if ((double)s->omega > most)
+    snprintf(text, size, "relaxation %g is beyond %.3g = 2/theta_max, where iterations diverge",
+             (double)s->omega, most);
+}
+
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
@@ -222,4 +234,5 @@ const struct solver solver_iisph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

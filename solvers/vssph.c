@@ -347,6 +347,12 @@ static int uses(const void *self, const char *field)
   return !only_shifting || s->shifting > 0;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -373,4 +379,5 @@ const struct solver solver_vssph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

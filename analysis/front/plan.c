@@ -37,6 +37,7 @@ static const cyaml_schema_field_t runs_fields[] = {
   TEXT(plan_runs, spacing),
   TEXT(plan_runs, frames),
   TEXT(plan_runs, seed),
+  TEXT(plan_runs, threads),
   LIST(plan_runs, set, num_set, text_value),
   LIST(plan_runs, product, num_product, axis_value),
   CYAML_FIELD_END};
@@ -44,8 +45,8 @@ static const cyaml_schema_value_t runs_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct plan_runs, runs_fields)};
 
 static const cyaml_schema_field_t plan_fields[] = {
-  NEEDED_TEXT(plan, name), NEEDED_TEXT(plan, about), LIST(plan, runs, num_runs, runs_value),
-  CYAML_FIELD_END};
+  NEEDED_TEXT(plan, name), NEEDED_TEXT(plan, about), TEXT(plan, timed),
+  LIST(plan, runs, num_runs, runs_value), CYAML_FIELD_END};
 static const cyaml_schema_value_t plan_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct plan, plan_fields)};
 
@@ -158,6 +159,7 @@ static const char **own_flag(struct run_request *r, const char *name)
   if (strcmp(name, "spacing") == 0) return &r->spacing;
   if (strcmp(name, "frames") == 0) return &r->frames;
   if (strcmp(name, "seed") == 0) return &r->seed;
+  if (strcmp(name, "threads") == 0) return &r->threads;
   return NULL;
 }
 
@@ -174,7 +176,8 @@ static status add_one(const struct plan_runs *runs, const char *solver, unsigned
                           .t_end = runs->t_end,
                           .spacing = runs->spacing,
                           .frames = runs->frames,
-                          .seed = runs->seed};
+                          .seed = runs->seed,
+                          .threads = runs->threads};
   char **set = calloc((size_t)runs->num_set + runs->num_product + 1, sizeof *set);
   status result = set ? OK : status_set(ERR_MEMORY, "out of memory");
   for (unsigned k = 0; set && k < runs->num_set; k++) set[r.num_sets++] = runs->set[k];

@@ -97,6 +97,7 @@ static status make_arguments(struct run *run, const struct run_request *r)
   add_flag(run, "--t-end", r->t_end);
   add_flag(run, "--frames", r->frames);
   add_flag(run, "--seed", r->seed);
+  add_flag(run, "--threads", r->threads);
   if (r->count_pairs) add(run, strdup("--count-pairs"));
   add_varied(run, r->vary, r->value);
   for (int k = 0; k < r->num_sets; k++) add_flag(run, "--set", r->set[k]);
@@ -206,6 +207,9 @@ static status resolve(struct run *run)
   TRY(variant_executable(&variant, &run->executable));
   run->name = variant_name(&variant);
   run->what = join(run, 4);
+  run->threads = 1;
+  for (int k = 4; k + 1 < run->argc; k++)
+    if (strcmp(run->argv[k], "--threads") == 0) run->threads = atoi(run->argv[k + 1]);
   return run->what ? identify(run) : status_set(ERR_MEMORY, "out of memory");
 }
 

@@ -9,7 +9,7 @@
 /* One run as a user would type it; NULL: the scene's or the program's own default. */
 struct run_request {
   const char *scene, *solver;
-  const char *dim, *precision, *backend, *dt, *t_end, *spacing, *frames, *seed;
+  const char *dim, *precision, *backend, *dt, *t_end, *spacing, *frames, *seed, *threads;
   int count_pairs;
   char *const *set; /* KEY=VALUE [num_sets] */
   int num_sets;
@@ -20,7 +20,7 @@ struct run {
   char id[HASH_TEXT];
   struct path executable, name; /* name: of the variant */
   char **argv;                  /* NULL-terminated, without the files to write */
-  int argc;
+  int argc, threads;
   char *what; /* the arguments behind `run SCENE --solver NAME`, as one text */
   enum outcome outcome;
   char *reason;
@@ -33,7 +33,7 @@ struct queue {
   int n, room;
   const char *results;
   struct journal journal;
-  int jobs;     /* at once */
+  int jobs;     /* threads of all runs at once, or one run that has more */
   double limit; /* [s] that a run may take; 0: any */
   long memory;  /* [MiB] that a run may hold; 0: any */
   int quiet;    /* no progress */

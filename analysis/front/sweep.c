@@ -8,11 +8,13 @@
 #include "front.h"
 #include "manifest.h"
 #include "plan.h"
+#include "timed.h"
 
 struct request {
   const char *plan, *results, *jobs, *timeout, *memory;
   const char *engine, *folder, *batch; /* --emit ENGINE FOLDER */
   const char *manifest, *task;
+  const char *timed, *threads; /* repetitions of timed runs, and their threads */
   int fresh, dry_run, quiet;
 };
 
@@ -43,15 +45,19 @@ static status parse(struct request *r, int argc, char **argv)
     {"--fresh", NULL, &r->fresh},     {"--dry-run", NULL, &r->dry_run},
     {"--quiet", NULL, &r->quiet},     {"--batch", &r->batch, NULL},
     {"--task", &r->task, NULL},       {"--manifest", &r->manifest, NULL},
+    {"--timed", &r->timed, NULL},     {"--threads", &r->threads, NULL},
   };
   int names = 0;
   const struct arguments what = {"sweep", flags, sizeof flags / sizeof *flags, &r->plan, 1, &names};
   *r = (struct request){.results = NULL};
   TRY(take_emit(r, &argc, argv));
   TRY(arguments_parse(&what, argc, argv));
-  const int settled = r->results || r->timeout || r->memory || r->fresh || r->dry_run || r->engine;
+  const int settled = r->results || r->timeout || r->memory || r->fresh || r->dry_run ||
+                      r->engine || r->timed || r->threads;
   if (!r->results) r->results = "results";
   if (!r->manifest != !r->task) return user_error("sweep: --manifest and --task go together");
+  if (r->timed && r->engine)
+    return user_error("sweep: --timed does not go with --emit: time where nothing else runs");
   if (r->batch && !r->engine) return user_error("sweep: --batch goes with --emit");
   if (r->manifest && names)
     return user_error("sweep: '%s' found, but a manifest takes the place of a plan", r->plan);
@@ -124,6 +130,16 @@ static status take_limits(const struct request *r, struct queue *queue)
   return user_error("--timeout: '%s' found, allowed is a number of seconds above 0", r->timeout);
 }
 
+/* After the untimed runs, which fill all cores. */
+static status take_times(const struct request *r, const struct plan *plan,
+                         const struct queue *queue)
+{
+  struct timings_settings how = {.threads = 1, .fresh = r->fresh, .quiet = r->quiet};
+  TRY(argument_whole("--timed", r->timed ? r->timed : plan->timed, 2, 1000, &how.repeat));
+  TRY(argument_whole("--threads", r->threads, 1, MOST_CORES, &how.threads));
+  return how.repeat ? timings_take(queue, &how) : OK;
+}
+
 static status emit(const struct request *r, struct queue *queue)
 {
   struct emit what = {.engine = r->engine, .folder = r->folder, .plan = r->plan, .fresh = r->fresh};
@@ -147,6 +163,7 @@ static status work(const struct request *r, const struct plan *plan, struct queu
   }
   if (r->engine) return emit(r, queue);
   TRY(queue_work(queue));
+  TRY(take_times(r, plan, queue));
   return conclude(queue, r->quiet, 1);
 }
 

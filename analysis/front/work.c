@@ -75,12 +75,23 @@ static status start(struct work *w, struct child *child, int number)
   return started;
 }
 
+/* Threads of the runs that are at work. */
+static int running_threads(const struct work *w)
+{
+  int n = 0;
+  for (int j = 0; j < w->jobs; j++)
+    if (w->child[j].pid) n += w->queue->run[w->child[j].run].threads;
+  return n;
+}
+
 static void start_some(struct work *w)
 {
   for (int j = 0; j < w->jobs && w->failed == OK && !stop_signal; j++) {
     if (w->child[j].pid) continue;
     while (w->next < w->queue->n && w->queue->run[w->next].finished) w->next++;
     if (w->next == w->queue->n) return;
+    const int taken = running_threads(w);
+    if (taken > 0 && taken + w->queue->run[w->next].threads > w->jobs) return;
     fail(w, start(w, &w->child[j], w->next++));
   }
 }

@@ -77,6 +77,9 @@ void result_facts_start(struct h5 *h, const struct run_facts *facts)
   h5_put_integer(h, run, (struct h5_label){"dim", "1", "dimensions of space"}, facts->dim);
   put_status(h, run, RUN_RUNNING, NULL);
   put_facts(h, "/run/parameters", facts->num_parameters, facts->parameters);
+  if (facts->num_warnings > 0)
+    h5_put_texts(h, run, (struct h5_label){"warnings", "1", "what was told before the run"},
+                 facts->num_warnings, facts->warnings);
   if (facts->provenance) {
     put_provenance(h, facts->provenance);
     put_circumstances(h, facts->provenance);

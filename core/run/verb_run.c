@@ -288,6 +288,9 @@ static status finish(struct session *s, double seconds)
 static status dry_run(const struct session *s)
 {
   const struct run *run = s->run;
+  struct warnings warnings;
+  run_warnings(run, &warnings);
+  warnings_say(&warnings);
   printf("%s with %s (%s): %d fluid and %d wall particles, %ld steps of %g s\n", s->o->name,
          run->solver->name, SPHBENCH_VARIANT, run->view->p.n, run->view->p.n_all - run->view->p.n,
          s->steps, run->dt);
@@ -361,6 +364,7 @@ static status carry_out(struct session *s, int threads)
   if (s->o->dry_run) return dry_run(s);
   TRY(start(s, threads));
   TRY(prepare_checkpoint(s));
+  warnings_say(&s->facts.warnings);
   progress_begin(&s->bar, s->o->name, s->o->quiet);
   clock_reset();
   const double begun = clock_now();

@@ -167,8 +167,8 @@ void scene_domain_around(struct scene *scene, double margin);
 
 /* Errors that a user can make with a scene: no particle, two particles at one place (named), a
  * place or velocity that is not finite, a fluid particle outside the domain. Two particles are at
- * one place when nearer than 1e-6 dx (or than the rounding of their coordinates). ERR_USER with a
- * sentence; ERR_MEMORY. Time and memory O(particles). */
+ * one place when nearer than 1e-6 dx, or than the rounding of their coordinates, but no more than
+ * dx. ERR_USER with a sentence; ERR_MEMORY. Time and memory O(particles). */
 status scene_check(const struct scene *scene);
 
 void scene_free(struct scene *scene);

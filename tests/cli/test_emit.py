@@ -37,7 +37,8 @@ class Tasks(sweep_case.Case):
         self.assertIn("9 runs in 2 tasks", self.emit("slurm"))  # taken to be 10 s each
         shutil.rmtree(self.dir / "job")
         self.call("sweep", "tiny.yaml", "--results", "r", "--quiet")
-        _, said = self.call("sweep", "tiny.yaml", "--emit", "slurm", "job", "--results", "r", code=2)
+        _, said = self.call("sweep", "tiny.yaml", "--emit", "slurm", "job", "--results", "r",
+                            code=2)
         self.one_sentence(said, "all 9 runs are finished")
         self.assertFalse((self.dir / "job").exists())
         self.assertIn("9 runs in 1 tasks, at most 9", self.emit("slurm", "--fresh"))

@@ -20,7 +20,7 @@ _sphbench() {
     case $verb in
       run | speed) offer "$("$command" "$verb" --help 2>/dev/null | awk '/^  -/ {print $1}')" ;;
       sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin --emit
-        --batch --manifest --task' ;;
+        --batch --manifest --task --timed --threads' ;;
       compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
