@@ -1,0 +1,1 @@
+load shared.'three-particle-gaps/three-particle-gaps.gp'

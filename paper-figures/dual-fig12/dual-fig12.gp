@@ -1,0 +1,1 @@
+load shared.'dual-fig10/dual-fig10.gp'

@@ -1,0 +1,6 @@
+# Dam breaks in 3-D from the side: a line per method.
+cell_width = 250.0
+cell_height = 133.7
+across = 4
+step = 0.4
+load shared.'matrix.gp'

@@ -1,0 +1,6 @@
+# Dam breaks in 3-D from the side: a line per run.
+cell_width = 270.0
+cell_height = 135.0
+across = 3
+step = 0.4
+load shared.'matrix.gp'
