@@ -3,7 +3,8 @@
 # the particles and for each time the step [m] of the axes' marks, and then loads this file.
 
 load 'contents.gp'
-left = 190.0; right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
+if (!exists('left')) { left = 190.0 } # room for the rows' labels [px]
+right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
 width = left + right + columns*cell_width + (columns - 1)*gap
 height = top + bottom + rows*cell_height + (rows - 1)*gap
 load shared.'style.gp'
@@ -38,11 +39,11 @@ do for [r = 1:rows] {
     set ytics step[c] scale 0.5 offset 0.5,0
     if (r == rows) { set format x '%g'; set xlabel 'x [m]' offset 0,0.7 } \
       else { set format x ''; unset xlabel }
-    if (c == 1) { set format y '%g'; set ylabel 'y [m]' offset y_label_offset,0 } \
+    if (c == 1) { set format y '%g'; set ylabel (cell_height > 60 ? 'y [m]' : '') offset y_label_offset,0 } \
       else { set format y ''; unset ylabel }
     unset label
     if (r == 1) {
-      set label 1 sprintf('t = %.2f s', time[c]) at graph 0.5, screen 1 - 0.5*top/height center
+      set label 1 sprintf('t = %g s', time[c]) at graph 0.5, screen 1 - 0.5*top/height center
     }
     if (cell == 1) { set label 4 label_colour at screen 1 - 12/width, screen 0.5 center rotate }
     if (c == 1) { set label 2 row[r] at screen 8/width, graph 0.5 left noenhanced }

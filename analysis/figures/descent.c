@@ -5,8 +5,8 @@
  * after k = 1, 2, ... iterations, of runs of one step that differ in fixed_iterations (their curve
  * is their label up to the comma), without gravity, walls or XSPH:
  *
- *   error     (Psi_k - Psi_min)/(Psi_0 - Psi_min),   Psi_min of the run with the same energy and K
- *             that went by a tolerance
+ *   error     (Psi_k - Psi_min)/(Psi_0 - Psi_min),   Psi_min the least of all runs with the same
+ *             energy and K, of which one should go by a tolerance (fixed_iterations = 0)
  *   Eq. (18)  the same with the curve's own last iterate in the place of the minimum
  *
  * With the argument `functions` also B_0, B_1, B_2 and their slopes, Eqs. (15) - (17). Values: the
@@ -108,14 +108,14 @@ static int same_problem(const struct figure_run *a, const struct figure_run *b)
          program_fact(a, "parameters.K") == program_fact(b, "parameters.K");
 }
 
-/* Psi of the run that went by a tolerance; NaN: there is none. */
+/* The least Psi that any run of the same problem reached: Psi has more than one minimum. */
 static double minimum_for(const struct curve *curves, int n, const struct curve *c)
 {
-  for (int k = 0; k < n; k++) {
-    const struct curve *other = &curves[k];
-    if (other->point[0].k == 0 && same_problem(other->run, c->run)) return other->point[0].psi;
-  }
-  return (double)NAN;
+  double least = HUGE_VAL;
+  for (int k = 0; k < n; k++)
+    for (int j = 0; j < curves[k].n && same_problem(curves[k].run, c->run); j++)
+      least = fmin(least, curves[k].point[j].psi);
+  return least;
 }
 
 static double left_after(const struct curve *c, const struct point *point, double least)

@@ -202,6 +202,7 @@ status recipe_read(const char *name, struct recipe **recipe)
   struct recipe *r = data;
   r->source = source;
   status result = adopt_runs(r);
+  for (unsigned k = 0; k < r->num_runs; k++) file_look_beside(&r->runs[k].scene, path.text);
   if (result == OK) result = check(r);
   if (result == OK)
     *recipe = r;

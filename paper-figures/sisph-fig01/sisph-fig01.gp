@@ -1,7 +1,7 @@
 width = 1060; height = 440
 load shared.'style.gp'
 load 'contents.gp'
-set multiplot layout 1,2 margins 0.09,0.98,0.14,0.9 spacing 0.1
+set multiplot layout 1,2 margins 0.09,0.98,0.173,0.9 spacing 0.1
 set logscale xy
 set format y '10^{%L}'
 set xlabel label_x

@@ -2,14 +2,14 @@ width = 1400; height = 440
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,3 margins 0.05,0.985,0.14,0.9 spacing 0.06
+set multiplot layout 1,3 margins 0.05,0.985,0.173,0.9 spacing 0.06
 set key top left
 set xlabel 'density over rest density λ [1]'
 array about[2] = ['bulk energy B(λ)', "its slope B'(λ)"]
 do for [c = 1:2] {
   set title about[c] offset 0,-0.4
   plot for [b = 0:2] sprintf('B%d.dat', b) using 1:(column(c + 1)) with lines ls 201 + b \
-    title sprintf('B_%d', b)
+    title sprintf('B%d', b)
 }
 set title label_y offset 0,-0.4
 set xlabel label_x
