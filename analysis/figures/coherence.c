@@ -1,9 +1,9 @@
 /* How well particles of a run move and lie together, over its frames:
  *
  *   variance   sum_i |v_i - <v>_i|^2 / sum_i |v_i - V|^2,   <v>_i the mean over the neighbours
- *              within 2 dx, V the mean of all: 0 where particles move as one fluid, 1 where each
+ *              within 2.1 dx, V the mean of all: 0 where particles move as one fluid, 1 where each
  *              goes its own way
- *   sheets     area (2-D: length) of thin sheets: particles whose neighbours within 2 dx lie flat
+ *   sheets     area (2-D: length) of thin sheets: particles whose neighbours within 2.1 dx lie flat
  *              (smallest eigenvalue of their second moments below a tenth of the next one), each
  *              with the square (2-D: length) of the distance of its nearest neighbour, at most
  *              1.5 dx: clumps and lone particles cover little
@@ -13,7 +13,7 @@
 #include "near.h"
 #include "program.h"
 
-#define REACH 2.0   /* dx */
+#define REACH 2.1   /* dx: 2 dx whatever the rounding */
 #define FLAT 0.1    /* of the next eigenvalue */
 #define WIDEST 1.5  /* dx: a particle covers no more */
 #define CLUMPED 0.5 /* dx */
