@@ -4,7 +4,7 @@ width = 1400; height = 420
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,3 margins 0.055,0.8,0.181,0.9 spacing 0.06
+set multiplot layout 1,3 margins 0.055,0.8,0.219,0.9 spacing 0.06
 array panel[3] = ["variance of neighbours' velocities [1]", 'thin sheets [m^{d-1}]', \
   'share of particles nearer than 0.5 dx [1]']
 set xlabel label_x

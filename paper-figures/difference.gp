@@ -4,7 +4,7 @@ width = 1200; height = 420
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,2 margins 0.065,0.75,0.181,0.9 spacing 0.08
+set multiplot layout 1,2 margins 0.065,0.75,0.219,0.9 spacing 0.08
 set xlabel label_x
 set yrange [0:*]
 unset key

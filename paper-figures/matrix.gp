@@ -2,9 +2,10 @@
 # quantity, equal axes, the same colour scale everywhere. A script sets cell_width and cell_height
 # [px] of a picture, across and the step [m] of the axes' marks, and then loads this file. Where a
 # program wrote x, y and the quantity, one file for each run, it sets colour_low, colour_high and
-# array window[4] as well. What a picture shows stands above it.
+# array window[4] as well; in 3-D, upward = 'z [m]'. What a picture shows stands above it.
 
 load 'contents.gp'
+label_up = exists('upward') ? upward : 'y [m]'
 if (!exists('rows')) {
   rows = n; columns = 1; walls = ''
   array row[n]
@@ -14,7 +15,7 @@ if (!exists('rows')) {
 cells = rows*columns
 across = cells < across ? cells : across
 lines = (cells + across - 1)/across
-left = 62.0; right = 110.0; top = 34.0; bottom = 52.0; gap_x = 14.0; gap_y = 30.0
+left = 76.0; right = 130.0; top = 34.0; bottom = 70.0; gap_x = 14.0; gap_y = 30.0
 width = left + right + across*cell_width + (across - 1)*gap_x
 height = top + bottom + lines*cell_height + (lines - 1)*gap_y
 load shared.'style.gp'
@@ -46,7 +47,7 @@ do for [cell = 1:cells] {
   set ytics step scale 0.5 offset 0.5,0
   if (cell + across > cells) { set format x '%g'; set xlabel 'x [m]' offset 0,0.7 } \
     else { set format x ''; unset xlabel }
-  if (place == 0) { set format y '%g'; set ylabel 'y [m]' offset 1,0 } \
+  if (place == 0) { set format y '%g'; set ylabel label_up offset 0.5,0 } \
     else { set format y ''; unset ylabel }
   unset label
   set label 2 (columns > 1 ? sprintf('%s, t = %g s', row[r], time[c]) : row[r]) \

@@ -1,6 +1,6 @@
-# Pressures of a block after its release, from negative (dark red) over none (white) to positive.
-cell_width = 190.0
-cell_height = 281.2
-across = 6
-step = 0.2
+# Pressures of a drop on a ball; what is dark is under tension.
+cell_width = 240.0
+cell_height = 222.9
+across = 3
+step = 0.1
 load shared.'matrix.gp'

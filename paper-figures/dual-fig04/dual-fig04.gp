@@ -2,7 +2,7 @@
 width = 1320; height = 720
 load shared.'style.gp'
 load 'contents.gp'
-set multiplot layout 2,3 margins 0.065,0.79,0.106,0.94 spacing 0.07,0.1
+set multiplot layout 2,3 margins 0.065,0.79,0.128,0.94 spacing 0.07,0.1
 set xtics 0.05
 set mxtics 5
 set format y '%g'

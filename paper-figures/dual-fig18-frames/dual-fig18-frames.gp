@@ -3,4 +3,5 @@ cell_width = 230.0
 cell_height = 123.3
 across = 4
 step = 0.2
+upward = 'z [m]'
 load shared.'matrix.gp'

@@ -1,7 +1,7 @@
 width = 1200; height = 460
 load shared.'style.gp'
 load 'contents.gp'
-set multiplot layout 1,2 margins 0.06,0.84,0.165,0.9 spacing 0.07
+set multiplot layout 1,2 margins 0.06,0.84,0.2,0.9 spacing 0.07
 set ylabel label_y
 set xlabel label_x
 set title 'here' offset 0,-0.4

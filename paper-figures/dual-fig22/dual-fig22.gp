@@ -3,4 +3,5 @@ cell_width = 250.0
 cell_height = 133.7
 across = 4
 step = 0.4
+upward = 'z [m]'
 load shared.'matrix.gp'

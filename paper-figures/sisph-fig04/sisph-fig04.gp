@@ -2,7 +2,7 @@ width = 1320; height = 420
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,3 margins 0.06,0.985,0.181,0.9 spacing 0.06
+set multiplot layout 1,3 margins 0.06,0.985,0.219,0.9 spacing 0.06
 array panel[3] = ['momentum per depth [kg/s]', 'kinetic energy per depth [J/m]', \
   'kinetic and potential energy, change [J/m]']
 set xlabel label_x

@@ -2,7 +2,7 @@ width = 1400; height = 440
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,3 margins 0.05,0.985,0.173,0.9 spacing 0.06
+set multiplot layout 1,3 margins 0.05,0.985,0.209,0.9 spacing 0.06
 set key top left
 set xlabel 'density over rest density λ [1]'
 array about[2] = ['bulk energy B(λ)', "its slope B'(λ)"]

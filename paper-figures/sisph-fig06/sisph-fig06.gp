@@ -2,7 +2,7 @@ width = 1400; height = 800
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 2,3 margins 0.06,0.84,0.095,0.95 spacing 0.045,0.1
+set multiplot layout 2,3 margins 0.06,0.84,0.115,0.95 spacing 0.045,0.1
 array stiff[3] = ['0.8', '8', '81']
 array way[8] = ['plain', 'Anderson-1', 'Anderson-2', 'Anderson-3', 'Anderson-4', 'Anderson-5', \
   'Chebyshev-0.9', 'Chebyshev-matched']

@@ -1,7 +1,7 @@
 width = 1200; height = 420
 load shared.'style.gp'
 load 'contents.gp'
-set multiplot layout 1,2 margins 0.07,0.88,0.181,0.9 spacing 0.09
+set multiplot layout 1,2 margins 0.07,0.88,0.219,0.9 spacing 0.09
 set logscale x
 set xlabel label_x
 set yrange [0:*]

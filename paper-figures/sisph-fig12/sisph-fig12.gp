@@ -3,4 +3,5 @@ cell_width = 170.0
 cell_height = 153.0
 across = 6
 step = 0.3
+upward = 'z [m]'
 load shared.'matrix.gp'
