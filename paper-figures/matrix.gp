@@ -50,7 +50,9 @@ do for [cell = 1:cells] {
   if (place == 0) { set format y '%g'; set ylabel label_up offset 0.5,0 } \
     else { set format y ''; unset ylabel }
   unset label
-  set label 2 (columns > 1 ? sprintf('%s, t = %g s', row[r], time[c]) : row[r]) \
+  about = columns == 1 ? row[r] : sprintf('t = %g s', time[c])
+  if (columns > 1 && c == 1) { about = row[r].', '.about }
+  set label 2 about \
     at graph 0, screen high + 10/height left noenhanced font ',11'
   set label 99 size_note at screen 0.995, screen 0.02 right noenhanced font ',9' \
     textcolor rgb '#666666'

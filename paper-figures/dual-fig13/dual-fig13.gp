@@ -4,8 +4,8 @@ load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
 set multiplot layout 2,3 margins 0.06,0.985,0.128,0.95 spacing 0.045,0.1
-array first[3] = [1, 4, 8]
-array last[3] = [3, 7, 11]
+array first[3] = [1, 4, 7]
+array last[3] = [3, 6, 9]
 array about[3] = ['strategies', 'spacing of virtual particles', 'time step']
 set xlabel label_x
 set logscale y
@@ -21,8 +21,9 @@ do for [form = 2:3] {
     } else {
       low = first[p]
       high = last[p]
-      plot for [k = low:high] file[k] using 1:(column(form)) with lines \
-        ls 201 + k - low title title[k]
+      plot file[3] using 1:(column(form)) with lines ls 208 title title[3].', dx, 1 ms', \
+        for [k = low:high] file[k] using 1:(column(form)) with lines ls 201 + k - low \
+        title title[k]
     }
   }
 }

@@ -1,7 +1,7 @@
 width = 1240; height = 880
 load shared.'style.gp'
 load 'contents.gp'
-set multiplot layout 2,2 margins 0.06,0.985,0.105,0.95 spacing 0.05,0.09
+set multiplot layout 2,2 margins 0.06,0.985,0.105,0.95 spacing 0.07,0.13
 unset grid
 unset key
 set border 15

@@ -2,6 +2,6 @@
 cell_width = 170.0
 cell_height = 153.0
 across = 6
-step = 0.3
+step = 0.5
 upward = 'z [m]'
 load shared.'matrix.gp'
