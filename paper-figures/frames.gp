@@ -13,6 +13,7 @@ load shared.'style.gp'
 px_of_mark = 7.0
 nothing = '/dev/null'
 y_label_offset = 0.3
+y_label = cell_height > 60 ? 'y [m]' : ''
 
 unset key
 unset grid
@@ -39,7 +40,7 @@ do for [r = 1:rows] {
     set ytics step[c] scale 0.5 offset 0.5,0
     if (r == rows) { set format x '%g'; set xlabel 'x [m]' offset 0,0.7 } \
       else { set format x ''; unset xlabel }
-    if (c == 1) { set format y '%g'; set ylabel (cell_height > 60 ? 'y [m]' : '') offset y_label_offset,0 } \
+    if (c == 1) { set format y '%g'; set ylabel y_label offset y_label_offset,0 } \
       else { set format y ''; unset ylabel }
     unset label
     if (r == 1) {
