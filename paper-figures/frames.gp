@@ -1,6 +1,6 @@
 # Rows of runs by columns of times; particles coloured by one quantity, equal axes, the same colour
-# scale everywhere. A script sets cell_width and cell_height [px] of a picture, the spacing [m] of
-# the particles and for each time the step [m] of the axes' marks, and then loads this file.
+# scale everywhere. A script sets cell_width and cell_height [px] of a picture and for each time the
+# step [m] of the axes' marks, and then loads this file.
 
 load 'contents.gp'
 if (!exists('left')) { left = 190.0 } # room for the rows' labels [px]
@@ -50,6 +50,9 @@ do for [r = 1:rows] {
     if (c == 1) { set label 2 row[r] at screen 8/width, graph 0.5 left noenhanced }
     if (note[cell] ne '') {
       set label 3 note[cell] at graph 0.5, graph 0.5 center font ',11' textcolor rgb '#666666'
+    }
+    if (cell == rows*columns) {
+      set label 99 size_note at screen 0.995, screen 0.02 right font ',9' textcolor rgb '#666666'
     }
     outline = 0
     do for [k = 1:num_overlays] { if (abs(overlay_time[k] - time[c]) < 1e-6) { outline = k } }
