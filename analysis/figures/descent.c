@@ -2,7 +2,7 @@
  *
  *   Psi/(m/h^2) = sum_i |x_i - x*_i|^2/2 + h^2 K/rho_0 B(lambda_i),   m = rho_0 V_0,  mu = K V_0,
  *
- * after k = 1, 2, ... iterations, of runs of one step that differ in fixed_iterations (their curve
+ * with lambda over the pairs within R at x*, after k = 1, 2, ... iterations, of runs of one step that differ in fixed_iterations (their curve
  * is their label up to the comma), without gravity, walls or XSPH:
  *
  *   error     (Psi_k - Psi_min)/(Psi_0 - Psi_min),   Psi_min the least of all runs with the same
@@ -43,25 +43,53 @@ static int energy_number(const struct figure_run *run)
   return word && word[0] == 'B' ? word[1] - '0' : 0;
 }
 
-/* Psi of positions x, with x* = x0 + h v0. */
-static status psi_of(const struct figure_run *run, const struct result_numbers *x,
-                     const struct result_numbers *x0, const struct result_numbers *v0, double *psi)
+/* lambda_i at x over the pairs that are within R at x*: a step looks for neighbours once. */
+struct pair_sum {
+  struct lambda_sum sum;
+  const double *x;
+  long i;
+};
+
+static void add_pair(int j, double r_start, void *self)
+{
+  struct pair_sum *s = self;
+  const double *a = s->x + 3 * s->i, *b = s->x + 3 * j;
+  const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  (void)r_start;
+  lambda_add(j, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), &s->sum);
+}
+
+/* sum_i B(lambda_i) */
+static status bulk(const struct figure_run *run, const double *x, const double *target, long n,
+                   double *sum)
+{
+  struct pair_sum s = {.x = x};
+  struct near near;
+  s.sum.kernel = lambda_kernel(run);
+  s.sum.dim = (int)program_fact(run, "dim");
+  const double full =
+    lambda_lattice(&s.sum.kernel, s.sum.dim, program_fact(run, "parameters.spacing"));
+  const status begun = near_begin(&near, target, (int)n, s.sum.kernel.R);
+  *sum = 0;
+  for (s.i = 0; begun == OK && s.i < n; s.i++) {
+    s.sum.sum = 0;
+    near_each(&near, target + 3 * s.i, add_pair, &s);
+    *sum += energy(energy_number(run), fmax(s.sum.sum / full - 1, 0));
+  }
+  near_end(&near);
+  return begun;
+}
+
+/* Psi of positions x [n][3] with the start x* of the iteration. */
+static status psi_of(const struct figure_run *run, const double *x, const double *target, long n,
+                     double *psi)
 {
   const double h = program_fact(run, "parameters.dt"), K = program_fact(run, "parameters.K");
-  const double stiff = h * h * K / program_fact(run, "parameters.rho0");
-  double *lambda = malloc((size_t)x->rows * sizeof *lambda);
-  const status result = lambda ? lambda_all(run, x->values, x->rows, x->rows, lambda)
-                               : status_set(ERR_MEMORY, "out of memory");
-  *psi = 0;
-  for (long i = 0; result == OK && i < x->rows; i++) {
-    for (int c = 0; c < 3; c++) {
-      const double shift = x->values[3 * i + c] - x0->values[3 * i + c] - h * v0->values[3 * i + c];
-      *psi += shift * shift / 2;
-    }
-    *psi += stiff * energy(energy_number(run), fmax(lambda[i] - 1, 0));
-  }
-  free(lambda);
-  return result;
+  double of_bulk, moved = 0;
+  TRY(bulk(run, x, target, n, &of_bulk));
+  for (long k = 0; k < 3 * n; k++) moved += (x[k] - target[k]) * (x[k] - target[k]) / 2;
+  *psi = moved + h * h * K / program_fact(run, "parameters.rho0") * of_bulk;
+  return OK;
 }
 
 /* Psi of the first iterate, x*, and of the last one of a run. */
@@ -73,10 +101,9 @@ static status energies(const struct figure_run *run, double *start, double *end)
   if (result == OK) result = result_read_array(run->file, 0, "velocity", &v0);
   if (result == OK)
     result = result_read_array(run->file, result_read_frames(run->file) - 1, "position", &x);
-  if (result == OK) result = psi_of(run, &x, &x0, &v0, end);
-  for (long i = 0; result == OK && i < 3 * x.rows; i++)
-    x.values[i] = x0.values[i] + h * v0.values[i];
-  if (result == OK) result = psi_of(run, &x, &x0, &v0, start);
+  for (long i = 0; result == OK && i < 3 * x.rows; i++) x0.values[i] += h * v0.values[i]; /* x* */
+  if (result == OK) result = psi_of(run, x.values, x0.values, x.rows, end);
+  if (result == OK) result = psi_of(run, x0.values, x0.values, x.rows, start);
   free(x0.values);
   free(v0.values);
   free(x.values);

@@ -36,9 +36,11 @@ def lattice_sum(R, dx):
     return sum(spiky(dx * math.dist((0, 0, 0), at), R) for at in itertools.product(cells, repeat=3))
 
 
-def lambdas(x, R, dx):
-    full = lattice_sum(R, dx)
-    return [sum(spiky(math.dist(a, b), R) for b in x) / full for a in x]
+def lambdas(x, R, dx, paired=None):
+    """Density over rest density; over the pairs that are within R at the places `paired`."""
+    full, paired = lattice_sum(R, dx), paired or x
+    return [sum(spiky(math.dist(a, b), R) for b, q in zip(x, paired) if math.dist(p, q) <= R) / full
+            for a, p in zip(x, paired)]
 
 
 class Programs(cli_case.Case):
@@ -115,7 +117,7 @@ class Programs(cli_case.Case):
 
         def of(at):
             shift = sum(math.dist(a, b) ** 2 for a, b in zip(at, target)) / 2
-            over = [max(value - 1, 0) for value in lambdas(at, 0.2, 0.1)]
+            over = [max(value - 1, 0) for value in lambdas(at, 0.2, 0.1, target)]
             return shift + 1e-6 * K / 1000 * sum(e * e / 2 for e in over)
 
         return of(target), of(x)
