@@ -2,8 +2,9 @@
  *
  *   Psi/(m/h^2) = sum_i |x_i - x*_i|^2/2 + h^2 K/rho_0 B(lambda_i),   m = rho_0 V_0,  mu = K V_0,
  *
- * with lambda over the pairs within R at x*, after k = 1, 2, ... iterations, of runs of one step that differ in fixed_iterations (their curve
- * is their label up to the comma), without gravity, walls or XSPH:
+ * with lambda over the pairs within R at x*, after k = 1, 2, ... iterations, of runs of one step
+ * that differ in fixed_iterations (their curve is their label up to the comma), without gravity,
+ * walls or XSPH:
  *
  *   error     (Psi_k - Psi_min)/(Psi_0 - Psi_min),   Psi_min the least of all runs with the same
  *             energy and K, of which one should go by a tolerance (fixed_iterations = 0)

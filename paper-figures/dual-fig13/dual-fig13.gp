@@ -3,7 +3,7 @@ width = 1320; height = 720
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 2,3 margins 0.06,0.985,0.128,0.95 spacing 0.045,0.1
+set multiplot layout 2,3 margins 0.06,0.985,0.128,0.95 spacing 0.045,0.17
 array first[3] = [1, 4, 7]
 array last[3] = [3, 6, 9]
 array about[3] = ['strategies', 'spacing of virtual particles', 'time step']

@@ -20,10 +20,7 @@ class Claims(cli_case.Case):
             (folder / "values.json").write_text(json.dumps(values))
 
     def decide(self, code):
-        with self.start("claims", "--results", "results", "--json", "out.json",
-                        stdout=cli_case.subprocess.PIPE, stderr=cli_case.subprocess.PIPE) as process:
-            process.communicate(timeout=60)
-        self.assertEqual(process.returncode, code)
+        self.call("claims", "--results", "results", "--json", "out.json", code=code)
         claims = {claim["id"]: claim for claim in json.loads((self.dir / "out.json").read_text())}
         page = (self.dir / "results/claims.md").read_text()
         self.assertTrue(all(f"| {name} |" in page for name in claims))

@@ -86,10 +86,7 @@ expect 0 'sphbench ' --version
 expect 0 'figure NAME'
 expect 2 "the nearest known one is 'run'" rum
 expect 2 "'sphbench --help' lists" zzzzzzzz
-for verb in claims; do
-  expect 2 "does not have the verb '$verb' yet" $verb
-  "$dir/bin/sphbench" --help | grep -qw "  $verb" && fail "--help offers $verb"
-done
+expect 2 "there is no folder 'no-such'" claims --results no-such
 expect 2 "allowed is openmp or cuda" run scene --backend opencl
 expect 2 "allowed is openmp or cuda" run scene --backend=
 expect 2 "allowed is 2 or 3" run scene --dim 4
@@ -214,10 +211,6 @@ of_paper='runs:
     spacing: 2
     set: [a=1, b=2]
     at_paper_size: {spacing: 1, set: [b=3, c=4]}'
-recipe "$head
-$paper
-$body" && sed -i 's/sisph/sisp/' "$dir/mine/recipe.yaml"
-mine 2 "recipe.yaml:4:8: 'sisp' found, allowed is dual-particle, sisph or helmholtz"
 recipe "$head
 place: Fig. 4
 $body"
