@@ -1,7 +1,7 @@
 # Completion of sphbench for bash: verbs, names and flags, as the command itself lists them.
 _sphbench() {
   local word=$2 before=$3 verb=${COMP_WORDS[1]-} command=${COMP_WORDS[0]}
-  local verbs='run list show sweep frames compare bless figure precision convergence profile speed report doctor'
+  local verbs='run list show sweep frames compare bless figure precision convergence profile speed report claims doctor'
   names() { "$command" list "$1" 2>/dev/null | awk '{print $1}'; }
   offer() { mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word"); }
   if ((COMP_CWORD == 1)); then
