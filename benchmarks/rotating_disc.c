@@ -8,10 +8,10 @@
  * instead of the rigid rotation. m = 4, 8, ... are disturbed by the lattice of the start. */
 #include "drop.h"
 
-#define PARAMS(P)                                                        \
-  P(radius, 1, 1e-6, 1e6, "m", "radius")                                 \
-  P(omega, 1, 1e-6, 1e6, "rad/s", "angular velocity, clockwise")         \
-  P(crests, 0, 0, 16, "1", "crests of the wave on the outline; 0: none") \
+#define PARAMS(P)                                                          \
+  P(radius, 1, 1e-6, 1e6, "m", "radius")                                   \
+  P(omega, 1, 1e-6, 1e6, "rad/s", "angular velocity, clockwise")           \
+  P(crests, 0, 0, 16, WHOLE, "crests of the wave on the outline; 0: none") \
   P(wave_height, 0.02, 1e-6, 0.2, "1", "height of the wave at the start, in radii")
 
 typedef struct {

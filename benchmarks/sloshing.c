@@ -6,10 +6,10 @@
  * density to first order. */
 #include "wave.h"
 
-#define PARAMS(P)                                                           \
-  P(length, 1.73, 1e-6, 1e6, "m", "length of the tank, to whole particles") \
-  P(depth, 0.6, 1e-6, 1e6, "m", "depth H of the water")                     \
-  P(half_waves, 1, 1, 8, "1", "number of the mode: half waves in the tank") \
+#define PARAMS(P)                                                             \
+  P(length, 1.73, 1e-6, 1e6, "m", "length of the tank, to whole particles")   \
+  P(depth, 0.6, 1e-6, 1e6, "m", "depth H of the water")                       \
+  P(half_waves, 1, 1, 8, WHOLE, "number of the mode: half waves in the tank") \
   P(steepness, 0.05, 1e-9, 0.5, "1", "height of the surface at the wall over H")
 
 typedef struct {

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define SOLVER_ABI 1
+#define SOLVER_ABI 2
 
 /* What a scene may ask and a solver can do. The text completes "the solver cannot ..." in the
  * compatibility table. */
@@ -101,6 +101,10 @@ struct solver {
   int (*uses)(const void *state, const char *field);
   /* Release what start took beyond fields and pair lists. Optional. */
   void (*stop)(struct run *run, void *state);
+  /* After start: what of these parameters the method cannot do at this dt, as a clause without a
+   * full stop in text [size], which is empty before. `speed`: the largest that the energy of the
+   * start allows [m/s]. Optional. */
+  void (*warn)(const void *state, double speed, char *text, size_t size);
 };
 
 /* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers
@@ -166,6 +170,10 @@ real *run_coefficients(struct run *run, int slot, int num_slots);
 double run_random(const struct run *run, unsigned long long counter);
 
 long run_step_number(const struct run *run);
+
+/* A solver's warning where its density compensation takes the part kappa of the compression away in
+ * each step: beyond 2 an overshoot is larger than what it takes away. */
+void warn_of_kappa(double kappa, char *text, size_t size);
 
 #define SOLVER(name) extern const struct solver solver_##name;
 #include "../solvers/solvers.def"

@@ -12,6 +12,7 @@
  * expand beyond. */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+#include <stdio.h>
 
 #define DIFFERENCES                                                                                \
   "relaxation: kappa of an iteration is multiplied by 1.4/theta_max (0.7/theta_max if clamp = "    \
@@ -37,8 +38,8 @@ enum { LEAST_DENSITY = 2, LEAST_DIVERGENCE = 1 };
 #define PARAMS(P)                                                                                  \
   P(tolerance, 1e-4, 0, 1, "1", "mean relative density error at which to stop")                    \
   P(divergence_tolerance, 1e-4, 0, 1, "1", "mean relative density change per step to stop at")     \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations of either solver")             \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations of each; 0: by tolerance")             \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations of either solver")           \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "number of iterations of each; 0: by tolerance")           \
   P(relaxation, 0, 0, 2, "1", "factor on kappa in an iteration; 0: 1.4/theta_max of the lattice")  \
   P(clamp, CLAMPED, 0, 2, "clamped|free|each", "sum of kappa >= 0, any, or each iteration's >= 0") \
   P(density_solver, ON, 0, 1, "off|on", "the constant-density solver")                             \
@@ -224,6 +225,17 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* Beyond 2/theta_max an iteration makes the stiffest mode worse. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double most = 2 / lattice_stiffest(&s->nb.kernel, (double)s->dx);
+  (void)speed;
+  if (s->clamp != (real)EACH && (double)s->theta > most)
+    snprintf(text, size, "relaxation %g is beyond %.3g = 2/theta_max, where iterations diverge",
+             (double)s->theta, most);
+}
+
 /* New particles have neither alpha nor a list yet. */
 static status changed(struct run *run, void *self)
 {
@@ -270,4 +282,5 @@ const struct solver solver_dfsph = {
   .max_dt = NULL,
   .uses = NULL,
   .stop = NULL,
+  .warn = warn,
 };

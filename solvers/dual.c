@@ -13,6 +13,8 @@
 
 #define DIFFERENCES                                                                              \
   DUAL_DIFFERENCES                                                                               \
+  "S.A, S.B: V_I is full inside walls: one that fades out behind a wall's last layer makes the " \
+  "wall a weak free surface\n"                                                                   \
   "S.B: Eq. (13) takes the density of the real particle that was copied: at shifted ones "       \
   "compression hides\n"                                                                          \
   "S.C: density = real (default) takes Eq. (13) from the real particles nearby: at nodes the "   \
@@ -27,7 +29,7 @@ static status project_sa(struct run *run, void *self)
   TRY(run_density(run));
   TRY(run_wall_rows(run));
   TRY(run_virtual(run, s->p.n_all));
-  s->num_virtual = s->p.n_all;
+  s->num_virtual = s->num_same = s->p.n_all;
   s->at_virtual = s->among_virtual = s->at_real = s->nb;
   return project_on(run, s);
 }
@@ -37,7 +39,7 @@ static status project_sa(struct run *run, void *self)
 STAGE void copy(const state *s, int I)
 {
   s->X[I] = s->p.x[I];
-  s->excess[I] = I < s->p.n ? larger(s->p.rho[I] / s->rho0 - 1, 0) : 0;
+  s->excess[I] = I < s->p.n ? larger(s->p.rho[I] / s->rho0 - 1, 0) : -1;
   s->lambda[I] = 0;
 }
 /* Macklin & Mueller Eq. (11)  lambda_I = -C_I / (sum_k |grad_k C_I|^2 + eps),  C_I = max(rho_I /
@@ -172,6 +174,12 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static status step_sa(struct run *run, void *s) { return advance(run, (state *)s, project_sa); }
 static status step_sb(struct run *run, void *s) { return advance(run, (state *)s, project_sb); }
 static status step_sc(struct run *run, void *s) { return advance(run, (state *)s, project_sc); }
@@ -188,7 +196,7 @@ static const struct field fields_sa[] = FIELD_TABLE(FIELDS), fields_sb[] = FIELD
     .can = DOES | (also_can), .params = the_params, .num_params = COUNT(the_params),        \
     .fields = the_fields, .num_fields = COUNT(the_fields), .state_size = sizeof(state),     \
     .start = start, .step = the_step, .project = the_project, .max_dt = NULL, .uses = uses, \
-    .stop = NULL                                                                            \
+    .stop = NULL, .warn = warn                                                              \
   }
 
 const struct solver solver_dual_sa =

@@ -38,8 +38,8 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
     "pressure gradient: Eq. (16) or the adjoint of Eq. (11)")                                     \
   P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without")   \
   P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                            \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                         \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                       \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")
 
 #define PARAMS_SC(P)                                                                       \
   PARAMS(P)                                                                                \
@@ -65,7 +65,8 @@ enum { LIST_AT_VIRTUAL, LIST_VIRTUAL, LIST_AT_REAL }; /* the run's pair lists */
 #define FIELDS_SB(F)                                                                          \
   FIELDS(F)                                                                                   \
   F(vec, X, VIRTUAL, KEPT, "m", "position of a virtual particle")                             \
-  F(real, excess, VIRTUAL, KEPT, "1", "max(rho - rho0, 0) / rho0 at the real particle")       \
+  F(real, excess, VIRTUAL, KEPT, "1",                                                         \
+    "max(rho - rho0, 0) / rho0 at the real particle; -1 on a wall")                           \
   F(real, lambda, ALL, STEP, "m^2", "multiplier of the shifting, Macklin & Mueller Eq. (11)") \
   F(vec, shift, ALL, STEP, "m", "displacement of a virtual particle in one shifting iteration")
 
@@ -80,8 +81,8 @@ typedef struct {
   real arrangement; /* stress points: number of one of their arrangements */
   FIELDS_SB(FIELD_MEMBER)
   struct pairs at_virtual, among_virtual, at_real; /* I -> j, I -> J, i -> J */
-  int num_virtual;
-  real *alpha; /* alpha_IJ, one per slot of among_virtual */
+  int num_virtual, num_same; /* S.A: as many are the real particles themselves */
+  real *alpha;               /* alpha_IJ, one per slot of among_virtual */
   real alpha0, unit_volume,
     solid_volume;           /* Eq. (15) of a full lattice; V_I and V_s of a full lattice */
   vec origin;               /* S.C: position of the node (0, .., 0) [m] */
@@ -97,7 +98,9 @@ STAGE lanes volume_j(const state *s, struct packet Ij)
   return or_else(of(s->p.V, Ij), s->solid_volume);
 }
 
-/* Eq. (8)   V_I = sum_j V_j^2 W_Ij, or saturated V_I = V_0 min(1, c_I/0.85), c_I = sum_j V_j W_Ij
+/* Eq. (8)   V_I = sum_j V_j^2 W_Ij, or saturated V_I = V_0 min(1, c_I/0.85), c_I = sum_j V_j W_Ij;
+ *           V_0 on a wall's particle that feels no fluid: behind the last layer is more wall, and
+ *           a volume that fades out there would open the wall's inner layers as a free surface
  * Eq. (12)  vbar_I = sum_fluid V_j v_j W_Ij / sum_fluid V_j W_Ij
  * Eq. (11)  D_I = -1/dt sum_j V_j (v_j - vbar_I) . grad_I W_Ij
  * Eq. (13)  D_I += kappa max(rho_I - rho0, 0) / (rho0 dt^2),
@@ -127,12 +130,14 @@ STAGE void source(const state *s, int I)
   }
   const real at_nodes = larger(s->mass * sum(number) / s->rho0 - 1, 0);
   const real nearby = is_fluid ? larger(sum(crowd) / cf, 0) : 0;
-  const real dense = s->excess                          ? s->excess[I]
+  const real dense = s->excess                          ? larger(s->excess[I], 0)
                      : s->density == (real)DENSITY_REAL ? nearby
                                                         : at_nodes;
   const real scaled = s->unit_volume / s->solid_volume;
-  s->VI[I] = s->volume == (real)VOLUME_PRINTED ? scaled * sum(V2)
-                                               : s->unit_volume * smaller(1, cI / SATURATION);
+  const int is_wall = s->excess ? s->excess[I] < 0 : I >= s->p.n && I < s->num_same;
+  s->VI[I] = is_wall && !is_fluid                ? s->unit_volume
+             : s->volume == (real)VOLUME_PRINTED ? scaled * sum(V2)
+                                                 : s->unit_volume * smaller(1, cI / SATURATION);
   s->wet[I] = is_fluid;
   s->source[I] = is_fluid ? sum(div) / s->dt + s->kappa * dense / sq(s->dt) : 0;
   if (s->lift) s->lift[I] = is_fluid ? times(1 / cf, sum(gradient)) : zero();

@@ -53,8 +53,8 @@ enum { LEAST_ITERATIONS = 2 };
 #define PARAMS(P)                                                                               \
   P(volume_error, 1e-4, 0, 1, "1", "rms relative change of volume per step that CG may leave")  \
   P(tolerance, 1e-3, 0, 1, "1", "part of the divergence that CG may leave")                     \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                       \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")         \
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                     \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")       \
   P(surface, ZERO, 0, 2, "printed|lifted|zero",                                                 \
     "at a free surface: nothing, the missing part of the Laplacian with phi = 0, or phi = 0")   \
   P(kappa, -1, -1, 100, "1", "density compensation; -1: 0.1 with gravity, 0 without")           \
@@ -303,6 +303,12 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -330,4 +336,5 @@ const struct solver solver_helmholtz = {
   .max_dt = NULL,
   .uses = NULL,
   .stop = NULL,
+  .warn = warn,
 };

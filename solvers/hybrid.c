@@ -191,6 +191,12 @@ static void stop(struct run *run, void *self)
   memory_give(s->beside, s->beside_bytes);
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static int uses(const void *self, const char *field)
 {
   (void)self;
@@ -216,7 +222,7 @@ static const struct field fields[] = FIELD_TABLE(FIELDS), fields_apic[] = FIELD_
     .differences = DIFFERENCES, .needs = the_needs, .can = the_can, .params = the_params,   \
     .num_params = COUNT(the_params), .fields = the_fields, .num_fields = COUNT(the_fields), \
     .state_size = sizeof(state), .start = start, .step = step, .changed = NULL,             \
-    .project = project, .max_dt = NULL, .uses = uses, .stop = stop                          \
+    .project = project, .max_dt = NULL, .uses = uses, .stop = stop, .warn = warn            \
   }
 
 const struct solver solver_pic =

@@ -27,8 +27,8 @@ enum { ROW = (SIDES + LANES - 1) / LANES * LANES }; /* slots of a matrix row */
   P(kappa, -1, -1, 100, "1", "density compensation, Eq. (13); -1: 0.1 with gravity, 0 without") \
   P(density, DENSITY_REAL, 0, 1, "virtual|real", "where the density of Eq. (13) is taken")      \
   P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                          \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                       \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                     \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")
 
 #define PARAMS_FLIP(P) \
   PARAMS(P)            \

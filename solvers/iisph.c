@@ -15,6 +15,7 @@
  * motion grows, at any tolerance and dt (0.4 sqrt(g H) after 1 s against 0.04; free diverges). */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+#include <stdio.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -35,14 +36,15 @@ enum { CLAMPED, FREE };
 enum { OWN, MIRRORED };
 enum { LEAST_ITERATIONS = 2 };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                      \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(relaxation, 0, 0, 2, "1", "omega of the Jacobi iteration; 0: 0.5 or what the lattice bears")   \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")            \
-  P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                               \
-  P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                      \
+#define PARAMS(P)                                                                                \
+  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                    \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                          \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                          \
+    "number of iterations, whatever the error; 0: by tolerance")                                 \
+  P(relaxation, 0, 0, 2, "1", "omega of the Jacobi iteration; 0: 0.5 or what the lattice bears") \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "pressures that only repel, or also attract")          \
+  P(warm, 0.5, 0, 1, "1", "part of the last pressure to start from")                             \
+  P(wall_pressure, OWN, 0, 1, "own|mirrored",                                                    \
     "walls push with p_i alone, or with p_b = p_i as well")
 
 #define FIELDS(F)                                                                                  \
@@ -187,6 +189,17 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* Beyond 2/theta_max an iteration makes the stiffest mode worse. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double most = 2 / lattice_stiffest(&s->nb.kernel, (double)s->dx);
+  (void)speed;
+  if ((double)s->omega > most)
+    snprintf(text, size, "relaxation %g is beyond %.3g = 2/theta_max, where iterations diverge",
+             (double)s->omega, most);
+}
+
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
@@ -221,4 +234,5 @@ const struct solver solver_iisph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

@@ -9,6 +9,8 @@
  * supports have less g and more theta). 0.4/dx^2 makes that -0.45 at worst for supports of 2 to 3
  * dx; 0 makes it -1.1 .. -6.5. */
 #include "../core/solver.h"
+#include "../core/sph/lattice.h"
+#include <stdio.h>
 
 #define DIFFERENCES                                                                              \
   "masses: rho_i = sum_j m_j W_ij and m_j in every gradient; the paper sets m = 1\n"             \
@@ -25,14 +27,15 @@
 
 enum { CLAMPED, FREE };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")                      \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(epsilon, 0.4, 0, 1e6, "1/dx^2", "relaxation epsilon of Eq. (11)")                              \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "multipliers that only repel, or also attract")          \
-  P(scorr_k, 0, 0, 10, "dx^2", "strength k of the artificial pressure, Eq. (13); 0: none")         \
-  P(scorr_n, 4, 1, 16, "1", "its exponent n, an integer")                                          \
+#define PARAMS(P)                                                                          \
+  P(tolerance, 1e-3, 0, 1, "1", "mean relative compression at which to stop")              \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                    \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                    \
+    "number of iterations, whatever the error; 0: by tolerance")                           \
+  P(epsilon, 0.4, 0, 1e6, "1/dx^2", "relaxation epsilon of Eq. (11)")                      \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "multipliers that only repel, or also attract")  \
+  P(scorr_k, 0, 0, 10, "dx^2", "strength k of the artificial pressure, Eq. (13); 0: none") \
+  P(scorr_n, 4, 1, 16, WHOLE, "its exponent n, an integer")                                \
   P(scorr_dq, 0.2, 0, 0.9, "R", "its reference distance dq")
 
 #define FIELDS(F)                                                                                \
@@ -137,6 +140,21 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+/* An iteration multiplies the stiffest mode by 1 - theta_max g/(g + epsilon), g = |grad C|^2. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double dx = (double)s->dx, m = (double)(s->mass / s->rho0), epsilon = (double)s->epsilon;
+  const double g = m * m * dx * dx * lattice_spread(&s->nb.kernel, dx);
+  const double least = g * (lattice_stiffest(&s->nb.kernel, dx) / 2 - 1);
+  (void)speed;
+  if (epsilon < least)
+    snprintf(text, size,
+             "epsilon %g is less than %.3g, with which iterations overshoot more than "
+             "they correct",
+             epsilon, least);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -162,4 +180,5 @@ const struct solver solver_pbf = {
   .max_dt = NULL,
   .uses = NULL,
   .stop = NULL,
+  .warn = warn,
 };

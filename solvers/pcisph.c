@@ -15,6 +15,7 @@
  * density, and feeds energy (default tank, 1 s: total energy 8 J with it, -2 J without). */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
+#include <stdio.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -37,15 +38,16 @@ enum { CLAMPED, FREE };
 enum { MEAN, LARGEST };
 enum { NONE, MIRRORED };
 
-#define PARAMS(P)                                                                                  \
-  P(tolerance, 1e-3, 0, 1, "1", "relative compression at which to stop")                           \
-  P(measure, MEAN, 0, 1, "mean|largest", "of which the tolerance is meant")                        \
-  P(min_iterations, 3, 0, 1e6, "1", "least number of iterations")                                  \
-  P(max_iterations, 100, 1, 1e6, "1", "largest number of iterations")                              \
-  P(fixed_iterations, 0, 0, 1e6, "1", "number of iterations, whatever the error; 0: by tolerance") \
-  P(relaxation, 0, 0, 4, "1", "factor on the paper's delta; 0: 2.8/theta_max of the lattice")      \
-  P(clamp, CLAMPED, 0, 1, "clamped|free", "p >= 0, or also tension")                               \
-  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's")    \
+#define PARAMS(P)                                                                               \
+  P(tolerance, 1e-3, 0, 1, "1", "relative compression at which to stop")                        \
+  P(measure, MEAN, 0, 1, "mean|largest", "of which the tolerance is meant")                     \
+  P(min_iterations, 3, 0, 1e6, WHOLE, "least number of iterations")                             \
+  P(max_iterations, 100, 1, 1e6, WHOLE, "largest number of iterations")                         \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                         \
+    "number of iterations, whatever the error; 0: by tolerance")                                \
+  P(relaxation, 0, 0, 4, "1", "factor on the paper's delta; 0: 2.8/theta_max of the lattice")   \
+  P(clamp, CLAMPED, 0, 1, "clamped|free", "p >= 0, or also tension")                            \
+  P(wall_pressure, NONE, 0, 1, "none|mirrored", "pressure of a wall: none, or its neighbour's") \
   P(warm_start, 0, 0, 1, "1", "part of its last p that a step starts from")
 
 #define FIELDS(F)                                                                                  \
@@ -128,23 +130,6 @@ STAGE void accelerate(const state *s, int i)
   s->ahead[i] = madd(s->ahead[i], s->dt, dv);
 }
 
-/* sum_j |m grad W_ij|^2 over a full lattice around i, where sum_j m grad W_ij = 0 */
-static double lattice_spread(const state *s)
-{
-  const struct kernel *kernel = &s->nb.kernel;
-  const double dx = (double)s->dx, m = (double)s->mass;
-  const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
-  double spread = 0;
-  for (int a = -reach; a <= reach; a++)
-    for (int b = -reach; b <= reach; b++)
-      for (int c = -deep; c <= deep; c++) {
-        const double r = dx * sqrt((double)(a * a + b * b + c * c));
-        const double slope = r > 0 ? m * (double)kernel_dW(kernel, (real)r, DIM) : 0;
-        spread += slope * slope;
-      }
-  return spread;
-}
-
 /* Error of the prediction for the next correction, and what that will be. */
 static double correct_pressures(const state *s)
 {
@@ -204,12 +189,23 @@ static status start(struct run *run, void *self)
   state *s = (state *)self;
   const double safety = s->clamp == (real)FREE ? 1.4 : 2.8;
   (void)run;
-  s->spread = (real)lattice_spread(s);
-  if (!(s->relaxation > 0))
-    s->relaxation = (real)(safety / lattice_stiffest(&s->nb.kernel, (double)s->dx));
+  const double m = (double)s->mass, dx = (double)s->dx;
+  s->spread = (real)(m * m * lattice_spread(&s->nb.kernel, dx));
+  if (!(s->relaxation > 0)) s->relaxation = (real)(safety / lattice_stiffest(&s->nb.kernel, dx));
   sweep_over(no_change, s, s->p.n_all);
   if (s->last) sweep(forget, s);
   return OK;
+}
+
+/* Beyond 4/theta_max an iteration makes the stiffest mode worse. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double most = 4 / lattice_stiffest(&s->nb.kernel, (double)s->dx);
+  (void)speed;
+  if ((double)s->relaxation > most)
+    snprintf(text, size, "relaxation %g is beyond %.3g = 4/theta_max, where iterations diverge",
+             (double)s->relaxation, most);
 }
 
 static int uses(const void *self, const char *field)
@@ -248,4 +244,5 @@ const struct solver solver_pcisph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

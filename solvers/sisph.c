@@ -20,6 +20,8 @@
 #include "../core/linear/anderson.h"
 #include "../core/linear/chebyshev.h"
 #include "../core/solver.h"
+#include "../core/sph/lattice.h"
+#include <stdio.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -63,10 +65,10 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
 #define PARAMS(P)                                                                                \
   P(energy, B0, 0, 2, "B0|B1|B2", "bulk energy B(lambda), Eqs. (15), (16), (17)")                \
   P(form, EQ_14, 0, 1, "eq12|eq14", "non-conservative or conservative substitution")             \
-  P(fixed_iterations, 0, 0, 1e6, "1",                                                            \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE,                                                          \
     "number of iterations N; 0: by tolerance, or 10 without one")                                \
   P(tolerance, 0, 0, 1, "dx", "eta: r.m.s. of h^2/m grad Psi at which to stop; 0: none")         \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of iterations with a tolerance")          \
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of iterations with a tolerance")        \
   P(K, 0, 0, 1e15, "Pa", "bulk modulus; 0: from mu, or 1e6 Pa if that is 0, too")                \
   P(mu, 0, 0, 1e15, "J", "energy per particle K dx^d (2-D: J/m); 0: from K")                     \
   P(S, 0, 0, 0, "1", "reported: sum of A+ in Eq. (14) on a full lattice; follows from K")        \
@@ -80,7 +82,7 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
   P(beta, 1, 0.1, 10, "1", "what S is divided by in the diagonal; 3 converges 2.8 times faster") \
   P(acceleration, PLAIN, 0, 2, "plain|chebyshev|anderson", "Eqs. (14), (22), (21)")              \
   P(spectral_radius, 0, 0, 0.9999, "1", "spectral radius rho of Eq. (23); 0: matched to S")      \
-  P(history, 1, 1, 5, "1", "n of Eq. (21), an integer")                                          \
+  P(history, 1, 1, 5, WHOLE, "n of Eq. (21), an integer")                                        \
   P(safeguard, GUARD_RESIDUAL, 0, 2, "none|psi|residual", "what an accelerated step may not raise")
 
 #define HISTORY(F, k)                                                          \
@@ -106,6 +108,7 @@ typedef struct {
   PARAMS(PARAM_MEMBER)
   FIELDS(FIELD_MEMBER)
   real common; /* the largest S_i of this iterate */
+  int given;   /* was a stiffness asked for? */
 } state;
 
 /* --- Sec. 4: the bulk energy and its forces */
@@ -403,6 +406,7 @@ static status resolve_stiffness(state *s)
     return user_error("K is %g Pa and mu is %g J: one follows from the other, allowed is to give "
                       "one of them",
                       (double)s->K, (double)s->mu);
+  s->given = s->K > 0 || s->mu > 0;
   if (s->mu > 0) s->K = s->mu / V0;
   if (s->K <= 0) s->K = DEFAULT_K;
   s->mu = s->K * V0;
@@ -420,6 +424,67 @@ static status start(struct run *run, void *self)
     sweep_over(give_modulus, s, s->p.n_all);
   }
   return run_neighbours(run); /* the first step's viscosity */
+}
+
+/* cosh(n arcosh x), x >= 1 */
+static double chebyshev_polynomial(int n, double x) { return cosh(n * acosh(x)); }
+
+/* The part of K that N iterations make act: 1 - (1 - 1/D)^N, which is 95 % at S = N beta/3, and
+ * with polynomials, of which Chebyshev's are the best that know only a bound, 1 - 1/T_N(1/(1 -
+ * 1/D)). */
+static double resolved(const state *s, int N)
+{
+  const double left = 1 - 1 / (1 + (double)(s->S / s->beta));
+  if (!(left > 0)) return 1;
+  return s->acceleration == (real)PLAIN ? 1 - pow(left, N)
+                                        : 1 - 1 / chebyshev_polynomial(N, 1 / left);
+}
+
+/* K_eff = K B''(1) G^2,   G^2 = (m/rho_0)^2 |sum_j sin(k.x_ij) grad W_ij|^2/k^2 at k -> 0 */
+static double effective_modulus(const state *s)
+{
+  const double angle[3] = {1e-3, 0, 0}, dx = (double)s->dx, V = (double)(s->mass / s->rho0);
+  const struct kernel *kernel = &s->nb.kernel;
+  const double unit = V * dx / angle[0], mode = lattice_mode(kernel, dx, angle);
+  return (double)s->K * (1 + (double)s->energy) * unit * unit * mode * lattice_spread(kernel, dx);
+}
+
+/* The largest beta with which the stiffest mode's factor 1 - (1 + s)/(1 + S/beta) is above -1,
+ *   s = dt^2 K/rho_0 (m/rho_0)^2 |sum_j sin(k.x_ij) grad W_ij|^2. */
+static double largest_beta(const state *s)
+{
+  const double dx = (double)s->dx, V = (double)(s->mass / s->rho0), dt = (double)s->dt;
+  const struct kernel *kernel = &s->nb.kernel;
+  const double stiffest = lattice_stiffest(kernel, dx) * lattice_spread(kernel, dx);
+  const double most = dt * dt * (double)(s->K / s->rho0) * V * V * stiffest;
+  return most > 1 ? 2 * (double)s->S / (most - 1) : HUGE_VAL;
+}
+
+/* A stiffness that was asked for and that the iterations do not reach, and a fluid that the default
+ * makes so soft that its own speed would compress it by a tenth. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const int N = (int)(s->fixed_iterations > 0 ? s->fixed_iterations : s->max_iterations);
+  const double enough = 1 - pow(1 - 3 / (N + 3.0), N), part = resolved(s, N);
+  const double modulus = part * effective_modulus(s);
+  const double squeeze = (double)s->rho0 * speed * speed / (2 * modulus);
+  if (s->acceleration == (real)PLAIN && (double)s->beta > largest_beta(s)) {
+    snprintf(text, size, "beta %g is beyond %.3g, where iterations diverge", (double)s->beta,
+             largest_beta(s));
+    return;
+  }
+  if (part >= enough || (!s->given && squeeze < 0.1)) return;
+  if (s->given)
+    snprintf(text, size,
+             "S = %.3g is more than %d iterations resolve, N/3 = %.3g with beta = 1: "
+             "the fluid has %.2g %% of its stiffness K = %g Pa",
+             (double)s->S, N, N / 3.0, 100 * part, (double)s->K);
+  else
+    snprintf(text, size,
+             "S = %.3g is more than %d iterations resolve, N/3 = %.3g with beta = 1: "
+             "the fluid is so soft (%.2g Pa) that its speed compresses it by %.2g %%",
+             (double)s->S, N, N / 3.0, modulus, 100 * squeeze);
 }
 
 /* New particles have no modulus yet. */
@@ -470,4 +535,5 @@ const struct solver solver_sisph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

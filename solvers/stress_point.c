@@ -82,6 +82,12 @@ static status start(struct run *run, void *self)
   return OK;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS_STRESS);
 static const struct field fields[] = FIELD_TABLE(FIELDS_PLACED);
 
@@ -107,4 +113,5 @@ const struct solver solver_stress_point = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

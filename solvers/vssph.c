@@ -46,13 +46,13 @@ enum { OFF, ON };
   P(separation, 1, 0, 1, "1", "part of its velocity with which fluid clings to walls it leaves")  \
   P(surface_below, 1, 0, 1, "1", "part of A_max below which -sum_j A_ij means free surface")      \
   P(kappa, -1, -1, 100, "1", "density compensation; -1: 0.1 with gravity, 0 without")             \
-  P(shifting, 0, 0, 100, "1", "iterations of particle shifting after a step")                     \
+  P(shifting, 0, 0, 100, WHOLE, "iterations of particle shifting after a step")                   \
   P(shift_inertia, 0.3, 0, 1, "1", "part of the way back to where shifting began")                \
   P(shift_bulk, 1, 0, 10, "dx", "shift by a neighbourhood compressed to 2 rho0, all on one side") \
   P(shift_surface, 0, 0, 10, "dx", "shift towards a neighbourhood that is all on one side")       \
   P(tolerance, 1e-4, 0, 1, "1", "relative residual at which CG stops")                            \
-  P(max_iterations, 1000, 1, 1e6, "1", "largest number of CG iterations")                         \
-  P(fixed_iterations, 0, 0, 1e6, "1", "exactly so many CG iterations; 0: by tolerance")
+  P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                       \
+  P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")
 
 #define FIELDS(F)                                                                       \
   F(real, share, ALL, STEP, "1", "1/alpha_i, 0 on walls")                               \
@@ -347,6 +347,12 @@ static int uses(const void *self, const char *field)
   return !only_shifting || s->shifting > 0;
 }
 
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  (void)speed;
+  warn_of_kappa((double)((const state *)self)->kappa, text, size);
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -373,4 +379,5 @@ const struct solver solver_vssph = {
   .max_dt = NULL,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

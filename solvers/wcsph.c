@@ -15,6 +15,8 @@
  * rest in a tank heats up (default tank, 1 s: total energy about 1200 J with them, -1 J without,
  * whatever the substep). */
 #include "../core/solver.h"
+#include "../core/sph/lattice.h"
+#include <stdio.h>
 #include <string.h>
 
 #define DIFFERENCES                                                                                \
@@ -118,6 +120,35 @@ static double max_dt(const void *self)
   const state *s = (const state *)self;
   const double h = (double)s->nb.kernel.R / 2, c = (double)s->c * sqrt((double)s->lightest);
   return c > 0 ? (double)s->cfl * h / (c * (1 + 0.6 * (double)s->alpha)) : HUGE_VAL;
+}
+
+/* Symplectic Euler is stable while dt w < 2, of sound on a lattice of rest density
+ *   w^2 = (c m/rho_0)^2 |sum_j sin(k.x_ij) grad W_ij|^2. */
+static double stable_dt(const state *s)
+{
+  const struct kernel *kernel = &s->nb.kernel;
+  const double dx = (double)s->dx, c = (double)s->c * sqrt((double)s->lightest);
+  const double stiffest = lattice_stiffest(kernel, dx) * lattice_spread(kernel, dx);
+  return 2 * (double)s->rho0 / (c * (double)s->mass * sqrt(stiffest));
+}
+
+/* Substeps that are too many or too long, and a fluid that its own speed compresses: density varies
+ * by (speed/c)^2/2. */
+static void warn(const void *self, double speed, char *text, size_t size)
+{
+  const state *s = (const state *)self;
+  const double dt = (double)s->dt, c = (double)s->c, substeps = ceil(dt / max_dt(s));
+  if (substeps > (double)s->max_substeps)
+    snprintf(text, size, "a step needs %.3g acoustic substeps, more than max_substeps = %g",
+             substeps, (double)s->max_substeps);
+  else if (fmin(dt, max_dt(s)) > stable_dt(s))
+    snprintf(text, size, "cfl %g makes substeps of %.3g s, sound on a lattice is stable up to %.3g",
+             (double)s->cfl, max_dt(s), stable_dt(s));
+  else if (c < 3 * speed)
+    snprintf(text, size,
+             "sound at c = %g m/s is not fast beside the fluid's %.3g m/s: its density "
+             "will vary by some %.2g %%",
+             c, speed, 50 * pow(speed / c, 2));
 }
 
 /* --- a substep */
@@ -309,4 +340,5 @@ const struct solver solver_wcsph = {
   .max_dt = max_dt,
   .uses = uses,
   .stop = NULL,
+  .warn = warn,
 };

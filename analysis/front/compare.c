@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "../../core/io/provenance.h"
 #include "arguments.h"
 #include "baseline.h"
 #include "front.h"
@@ -15,15 +16,24 @@ struct request {
   const char *names[2]; /* results, baseline */
   int num_names;
   const char *junit, *json, *reason;
+  int bitwise, all;
 };
 
 static status parse(struct request *r, const char *verb, int argc, char **argv)
 {
+  const struct flag flags[] = {{"--junit", &r->junit, NULL},
+                               {"--json", &r->json, NULL},
+                               {"--bitwise", NULL, &r->bitwise},
+                               {"--all", NULL, &r->all},
+                               {"--reason", &r->reason, NULL}};
+  enum { NUM_OF_COMPARE = 4 };
   const int is_bless = strcmp(verb, "bless") == 0;
-  const struct flag flags[] = {
-    {"--junit", &r->junit, NULL}, {"--json", &r->json, NULL}, {"--reason", &r->reason, NULL}};
-  const struct arguments what = {
-    verb, is_bless ? flags + 2 : flags, is_bless ? 1 : 2, r->names, 2, &r->num_names};
+  const struct arguments what = {verb,
+                                 is_bless ? flags + NUM_OF_COMPARE : flags,
+                                 is_bless ? 1 : NUM_OF_COMPARE,
+                                 r->names,
+                                 2,
+                                 &r->num_names};
   *r = (struct request){.num_names = 0};
   TRY(arguments_parse(&what, argc, argv));
   if (r->num_names == 2) return OK;
@@ -35,21 +45,23 @@ static status parse(struct request *r, const char *verb, int argc, char **argv)
 
 static void print_row(const struct comparison *row)
 {
-  printf("%-4s  %-22s %13.6g %13.6g %10.2g  %s%s%s\n", row->pass ? "ok" : "FAIL", row->name,
+  printf("%-4s  %-24s %13.6g %13.6g %10.2g  %s%s%s\n", row->pass ? "ok" : "FAIL", row->name,
          row->value, row->baseline, row->tolerance, row->run, *row->note ? ": " : "", row->note);
 }
 
-/* Worst first; what passes is told only as far as there is room. */
-static void print_table(const struct comparisons *all)
+/* Worst first; what passes is told only as far as there is room, if not all is asked for. */
+static void print_table(const struct comparisons *all, int every)
 {
-  printf("%-4s  %-22s %13s %13s %10s  %s\n", "", "metric", "value", "baseline", "gate", "run");
-  for (int k = 0; k < all->n && (k < MOST_LINES || !all->row[k].pass); k++) print_row(&all->row[k]);
-  if (all->n > MOST_LINES && all->row[MOST_LINES].pass)
-    printf("... and %d more that pass\n", all->n - MOST_LINES);
-  printf(
-    "%d values and curves of %d runs compared, %d failed; the gate is the smallest change that "
-    "would have failed\n",
-    all->n, all->runs, all->failed);
+  const int room = every ? all->n : MOST_LINES;
+  printf("%-4s  %-24s %13s %13s %10s  %s\n", "", "metric", "value", "baseline", "gate", "run");
+  for (int k = 0; k < all->n && (k < room || !all->row[k].pass); k++) print_row(&all->row[k]);
+  if (all->n > room && all->row[room].pass)
+    printf("... and %d more that pass (--all shows them)\n", all->n - room);
+  printf("%d values and parts of curves of %d runs compared, %d failed; gate: the smallest change "
+         "that would have been caught\n",
+         all->n, all->runs, all->failed);
+  printf("%d runs are the same in every bit, %d were made by the same compiler and flags\n",
+         all->identical, all->same_build);
   if (all->extra)
     printf("warning: %d runs or metrics are not in the baseline (bless adds them)\n", all->extra);
 }
@@ -127,10 +139,11 @@ static status write_junit(const char *path, const struct comparisons *all)
 static status report(const struct request *r, const struct comparisons *all)
 {
   const int to_stdout = (r->json && !strcmp(r->json, "-")) || (r->junit && !strcmp(r->junit, "-"));
-  if (!to_stdout) print_table(all);
+  if (!to_stdout) print_table(all, r->all);
   if (r->json)
-    TRY(json_out_finish(json_pack("{s:i, s:i, s:i, s:o}", "compared", all->n, "failed", all->failed,
-                                  "unknown", all->extra, "metrics", rows_json(all)),
+    TRY(json_out_finish(json_pack("{s:i, s:i, s:i, s:i, s:i, s:o}", "compared", all->n, "failed",
+                                  all->failed, "unknown", all->extra, "identical", all->identical,
+                                  "same_build", all->same_build, "metrics", rows_json(all)),
                         r->json, NULL));
   if (r->junit) TRY(write_junit(r->junit, all));
   if (all->runs == 0)
@@ -146,9 +159,10 @@ status verb_compare(int argc, char **argv)
   json_t *runs = NULL, *baseline = NULL;
   struct comparisons all = {.n = 0};
   TRY(parse(&r, "compare", argc, argv));
+  all.bitwise = r.bitwise;
   status result = baseline_read(r.names[1], &baseline);
   if (result == OK)
-    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"), &runs);
+    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"), NULL, &runs);
   if (result == OK) result = baseline_compare(runs, baseline, &all);
   if (result == OK) result = report(&r, &all);
   free(all.row);
@@ -161,9 +175,9 @@ status verb_compare(int argc, char **argv)
 
 static json_t *empty_baseline(void)
 {
-  return json_pack("{s:s, s:o, s:o, s:{}, s:[]}", "about", "Written by `sphbench bless`", "rules",
-                   baseline_default_rules(), "curves", baseline_default_curves(), "runs",
-                   "history");
+  return json_pack("{s:s, s:o, s:o, s:o, s:{}, s:{}, s:[]}", "about", "Written by `sphbench bless`",
+                   "rules", baseline_default_rules(), "curves", baseline_default_curves(), "seeds",
+                   baseline_default_seeds(), "builds", "runs", "history");
 }
 
 static void add_history(json_t *baseline, const char *reason, int changes)
@@ -171,24 +185,38 @@ static void add_history(json_t *baseline, const char *reason, int changes)
   char date[32];
   const time_t now = time(NULL);
   struct tm utc;
+  struct provenance built;
+  provenance_fill(&built, 1, 0, NULL);
   strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-  json_array_append_new(
-    json_object_get(baseline, "history"),
-    json_pack("{s:s, s:s, s:i}", "date", date, "reason", reason, "changes", changes));
+  json_array_append_new(json_object_get(baseline, "history"),
+                        json_pack("{s:s, s:s, s:s, s:i}", "date", date, "commit", built.commit,
+                                  "reason", reason, "changes", changes));
+}
+
+/* What changes, failed or not counted as new. Returns the number of changed values. */
+static int show_changes(const struct comparisons *all, int *missing)
+{
+  int changed = 0;
+  *missing = 0;
+  for (int k = 0; k < all->n && !all->row[k].pass; k++) {
+    const int is_missing = strcmp(all->row[k].name, "run") == 0;
+    if (!is_missing) print_row(&all->row[k]);
+    *missing += is_missing;
+    changed += !is_missing;
+  }
+  return changed;
 }
 
 /* Runs that were not repeated stay as they are. */
 static status bless(const struct request *r, json_t *baseline, const json_t *runs)
 {
-  struct comparisons all;
+  struct comparisons all = {.n = 0};
   const char *key;
-  json_t *run;
-  int fresh = 0, missing = 0;
-  json_t *known = json_object_get(baseline, "runs");
+  json_t *run, *known = json_object_get(baseline, "runs");
+  int fresh = 0, missing;
   TRY(baseline_compare(runs, baseline, &all));
-  for (int k = 0; k < all.n; k++) missing += strcmp(all.row[k].name, "run") == 0;
-  for (int k = 0; k < all.n && !all.row[k].pass; k++)
-    if (strcmp(all.row[k].name, "run") != 0) print_row(&all.row[k]);
+  const int changed = show_changes(&all, &missing);
+  free(all.row);
   json_object_foreach((json_t *)runs, key, run)
   {
     if (!json_object_get(known, key)) {
@@ -197,12 +225,10 @@ static status bless(const struct request *r, json_t *baseline, const json_t *run
     }
     json_object_set(known, key, run);
   }
-  const int changes = all.failed - missing + fresh;
-  printf("%d values changed, %d runs are new, %d were not repeated and stay\n",
-         all.failed - missing, fresh, missing);
-  free(all.row);
-  add_history(baseline, r->reason, changes);
-  return json_out_write(r->names[1], baseline);
+  printf("%d values changed, %d runs are new, %d were not repeated and stay\n", changed, fresh,
+         missing);
+  add_history(baseline, r->reason, changed + fresh);
+  return baseline_write(r->names[1], baseline);
 }
 
 status verb_bless(int argc, char **argv)
@@ -210,7 +236,7 @@ status verb_bless(int argc, char **argv)
   struct request r;
   json_t *runs = NULL, *baseline = NULL;
   TRY(parse(&r, "bless", argc, argv));
-  if (!r.reason || strspn(r.reason, " ") == strlen(r.reason))
+  if (!r.reason || strspn(r.reason, " \t\r\n") == strlen(r.reason))
     return user_error("bless: --reason TEXT is needed: why may the results change?");
   status result = OK;
   if (path_is_file(r.names[1]))
@@ -218,7 +244,8 @@ status verb_bless(int argc, char **argv)
   else
     baseline = empty_baseline();
   if (result == OK)
-    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"), &runs);
+    result = baseline_collect(r.names[0], json_object_get(baseline, "curves"),
+                              json_object_get(baseline, "builds"), &runs);
   if (result == OK) result = bless(&r, baseline, runs);
   json_decref(runs);
   json_decref(baseline);

@@ -98,6 +98,7 @@ static status write_walls(struct figure *f, struct result_read *r, FILE *content
   struct new_file file;
   if (!result_read_has(r, "walls/position")) return OK;
   TRY(result_read_series(r, "walls/position", &x));
+  if (x.components < 2) x.rows = 0; /* no positions */
   const status begun = data_begin(f, &file, "walls.dat", "wall particles", "x [m]|y [m]");
   if (begun == OK) write_wall_rows(file.stream, &x, upward(r));
   free(x.values);

@@ -1,6 +1,7 @@
 #include "plan.h"
 
 #include <cyaml/cyaml.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +37,7 @@ static const cyaml_schema_field_t runs_fields[] = {
   TEXT(plan_runs, spacing),
   TEXT(plan_runs, frames),
   TEXT(plan_runs, seed),
+  TEXT(plan_runs, threads),
   LIST(plan_runs, set, num_set, text_value),
   LIST(plan_runs, product, num_product, axis_value),
   CYAML_FIELD_END};
@@ -43,10 +45,12 @@ static const cyaml_schema_value_t runs_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct plan_runs, runs_fields)};
 
 static const cyaml_schema_field_t plan_fields[] = {
-  NEEDED_TEXT(plan, name), NEEDED_TEXT(plan, about), LIST(plan, runs, num_runs, runs_value),
-  CYAML_FIELD_END};
+  NEEDED_TEXT(plan, name), NEEDED_TEXT(plan, about), TEXT(plan, timed),
+  LIST(plan, runs, num_runs, runs_value), CYAML_FIELD_END};
 static const cyaml_schema_value_t plan_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct plan, plan_fields)};
+
+enum { MOST_RUNS = 10000 }; /* of a plan: more is a slip, not a plan */
 
 /* --- where they are --- */
 
@@ -142,6 +146,7 @@ static const char **own_flag(struct run_request *r, const char *name)
   if (strcmp(name, "spacing") == 0) return &r->spacing;
   if (strcmp(name, "frames") == 0) return &r->frames;
   if (strcmp(name, "seed") == 0) return &r->seed;
+  if (strcmp(name, "threads") == 0) return &r->threads;
   return NULL;
 }
 
@@ -158,7 +163,8 @@ static status add_one(const struct plan_runs *runs, const char *solver, unsigned
                           .t_end = runs->t_end,
                           .spacing = runs->spacing,
                           .frames = runs->frames,
-                          .seed = runs->seed};
+                          .seed = runs->seed,
+                          .threads = runs->threads};
   char **set = calloc((size_t)runs->num_set + runs->num_product + 1, sizeof *set);
   status result = set ? OK : status_set(ERR_MEMORY, "out of memory");
   for (unsigned k = 0; set && k < runs->num_set; k++) set[r.num_sets++] = runs->set[k];
@@ -187,15 +193,30 @@ static int is_known(const struct names *solvers, const char *name)
   return 0;
 }
 
+/* Of one solver. */
+static status count_combinations(const struct plan *plan, unsigned number, double others,
+                                 unsigned long *combinations)
+{
+  const struct plan_runs *runs = &plan->runs[number - 1];
+  const struct path at = path_of("runs[%u].product", number);
+  double count = 1;
+  for (unsigned k = 0; k < runs->num_product; k++) count *= runs->product[k].num_values;
+  *combinations = (unsigned long)fmin(count, MOST_RUNS);
+  if (count + others <= MOST_RUNS) return OK;
+  return yaml_source_refuse(plan->source, at.text,
+                            "%g runs found, allowed are at most %d in a plan", count + others,
+                            MOST_RUNS);
+}
+
 static status expand_runs(const struct plan *plan, unsigned number, const struct names *solvers,
                           struct queue *queue)
 {
   const struct plan_runs *runs = &plan->runs[number - 1];
   const unsigned n = runs->num_solvers ? runs->num_solvers : (unsigned)solvers->n;
   char **names = runs->num_solvers ? runs->solvers : solvers->name;
-  unsigned long combinations = 1;
-  for (unsigned k = 0; k < runs->num_product; k++) combinations *= runs->product[k].num_values;
   for (unsigned s = 0; s < n; s++) {
+    unsigned long combinations;
+    TRY(count_combinations(plan, number, queue->n, &combinations));
     if (!is_known(solvers, names[s])) {
       const struct path at = path_of("runs[%u].solvers", number);
       const char *near = nearest_name(names[s], (const char *const *)solvers->name, solvers->n);

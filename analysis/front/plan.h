@@ -9,8 +9,8 @@ struct plan_runs {
   char *scene;
   char **solvers; /* none: all that there are */
   unsigned num_solvers;
-  char *dim, *precision, *backend, *dt, *t_end, *spacing, *frames, *seed; /* NULL: the default */
-  char **set;                                                             /* KEY=VALUE */
+  char *dim, *precision, *backend, *dt, *t_end, *spacing, *frames, *seed, *threads; /* or NULL */
+  char **set;                                                                       /* KEY=VALUE */
   unsigned num_set;
   struct plan_axis {
     char *name, **values;
@@ -22,6 +22,7 @@ struct plan_runs {
 struct plan {
   struct yaml_source *source;
   char *name, *about;
+  char *timed; /* how often each run is timed; NULL: it is not */
   struct plan_runs *runs;
   unsigned num_runs;
 };

@@ -105,6 +105,8 @@ static void say_counts(const struct precision *p)
          p->study.ask.scene, kind_words[p->kind], p->n, valid, timed, p->floor, p->floor_means);
   if (p->load > 0.5)
     printf("the machine was busy before (load %.2f): times are worth little\n", p->load);
+  if (p->others > 0.5 * p->wall)
+    printf("others kept %.2g cores busy meanwhile: times are worth little\n", p->others / p->wall);
   for (int k = 0; k < p->study.num_methods; k++)
     if (p->study.method[k].refusal) printf("  not run: %s\n", p->study.method[k].refusal);
 }

@@ -4,6 +4,7 @@
 #define PRECISION_H
 #include "statistics.h"
 #include "study.h"
+#include "timed.h"
 
 /* The four kinds of error, which are never mixed. K(name, word, meaning) */
 #define KIND_LIST(K)                                                                          \
@@ -56,6 +57,8 @@ struct precision {
   double floor;            /* of the noise, a factor */
   const char *floor_means; /* how it was found */
   double load;             /* of the machine before the times were taken */
+  double wall, others;     /* of all timed runs [s]; core seconds of other processes meanwhile */
+  struct cores cores;      /* that timed runs stay on */
   json_t *fairness;        /* [{what, same, value}] */
 };
 

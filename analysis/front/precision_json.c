@@ -226,6 +226,7 @@ static json_t *origin_json(const struct precision *p)
   json_object_set_new(origin, "date", json_string(date));
   json_object_set_new(origin, "threads", json_integer(p->threads));
   json_object_set_new(origin, "load_before", json_real(p->load));
+  json_object_set_new(origin, "others", json_out_number(p->others / p->wall));
   return origin;
 }
 

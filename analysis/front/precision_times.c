@@ -1,18 +1,13 @@
-/* Timed runs: each is a process of its own, nothing else of ours runs beside it, and the points
- * take turns, there and back (A B C, C B A, ...), so that a machine that gets slower favours none.
- * What was timed before, on this processor with this executable, is not timed again. */
-#include <errno.h>
-#include <signal.h>
+/* The points' timed runs (timed.h), in rounds. What was timed before, on this processor with this
+ * executable, is not timed again. */
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "../../core/base/clock.h"
 #include "../../core/base/progress.h"
 #include "precision.h"
-#include "process.h"
 
 enum { START = 1 /* s, from starting a process to its first step, at most */ };
 #define USUAL_START 0.06 /* s */
@@ -67,44 +62,24 @@ static status take_earlier(struct precision *p)
   return OK;
 }
 
-static status note_time(const struct precision *p, const struct point *point, int arm, double setup)
+static status note_time(const struct precision *p, const struct point *point, int arm,
+                        const struct timed *timed)
 {
+  const double setup = point->setup[arm][point->taken[arm] - 1];
   const struct path path = timings_path(p);
   char date[32];
   const time_t now = time(NULL);
   struct tm utc;
   strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-  json_t *line = json_pack("{s:s, s:i, s:f, s:f, s:s, s:I, s:s, s:s}", "id", point->timed.id, "arm",
-                           arm, "seconds", point->seconds[arm][point->taken[arm] - 1], "setup",
-                           setup, "cpu", processor_name(p), "threads", (json_int_t)p->threads,
-                           "solver", point_solver(p, point), "date", date);
-  char *text = line ? json_dumps(line, JSON_COMPACT) : NULL;
-  json_decref(line);
-  FILE *file = text ? fopen(path.text, "a") : NULL;
-  const int failed = !file || fprintf(file, "%s\n", text) < 0;
-  free(text);
-  if ((file && fclose(file)) || failed)
-    return status_set(ERR_IO, "cannot write '%s': %s", path.text, strerror(errno));
-  return OK;
+  json_t *line = json_pack(
+    "{s:s, s:i, s:f, s:f, s:s, s:I, s:s, s:s, s:f, s:f, s:f}", "id", point->timed.id, "arm", arm,
+    "seconds", point->seconds[arm][point->taken[arm] - 1], "setup", setup, "cpu", processor_name(p),
+    "threads", (json_int_t)p->threads, "solver", point_solver(p, point), "date", date,
+    "load_before", timed->load_before, "load_after", timed->load_after, "others", timed->others);
+  return timed_note(path.text, line);
 }
 
 /* --- one timed run --- */
-
-/* Wait for at most `limit` seconds; 0 if it had to be stopped. */
-static int wait_until(pid_t child, double limit, int *state)
-{
-  const struct timespec pause = {.tv_nsec = 500 * 1000};
-  const double begun = clock_now();
-  for (;;) {
-    const pid_t ended = waitpid(child, state, WNOHANG);
-    if (ended == child || (ended < 0 && errno != EINTR)) return 1;
-    if (clock_now() - begun > limit) break;
-    nanosleep(&pause, NULL);
-  }
-  kill(child, SIGKILL);
-  waitpid(child, state, 0);
-  return 0;
-}
 
 /* The facts that two runs of the same thing share to the last bit. */
 static int same_results(const json_t *a, const json_t *b)
@@ -121,59 +96,40 @@ static int same_results(const json_t *a, const json_t *b)
 
 /* Time of a run and of what it does before and after; a run that does not compute what the untimed
  * one did makes the point invalid. */
-static void take_facts(struct point *point, int arm, double wall, const json_t *facts)
+static void take_facts(struct point *point, int arm, const struct timed *timed)
 {
-  const char *word = json_string_value(json_object_get(facts, "status"));
+  const char *word = json_string_value(json_object_get(timed->facts, "status"));
   if (!word || strcmp(word, "ok") != 0) {
     point->reason = text_make("its timed run ended otherwise: %s", word ? word : "without facts");
-  } else if (!same_results(facts, point->facts)) {
+  } else if (!same_results(timed->facts, point->facts)) {
     point->reason = strdup("its timed run computed something else than the untimed one");
   } else {
     const int at = point->taken[arm]++;
-    point->seconds[arm][at] = fact_number(facts, "timing.total") -
-                              fact_number(facts, "timing.metrics") -
-                              fact_number(facts, "timing.output");
-    point->setup[arm][at] = wall - fact_number(facts, "timing.total");
+    point->seconds[arm][at] = timed->seconds;
+    point->setup[arm][at] = timed->wall - fact_number(timed->facts, "timing.total");
   }
 }
 
 static status time_once(struct precision *p, struct point *point, int arm)
 {
   const struct path json = path_of("%s/timed-%d.tmp", p->folder.text, (int)getpid());
-  char threads[16];
-  snprintf(threads, sizeof threads, "%ld", p->threads);
-  const char *const more[] = {"--threads", threads, "--json", json.text, "--quiet"};
-  enum { NUM_MORE = sizeof more / sizeof *more };
-  const struct run *run = &point->timed;
-  const char **argv = calloc((size_t)run->argc + NUM_MORE + 2, sizeof *argv);
-  if (!argv) return status_set(ERR_MEMORY, "out of memory");
-  argv[0] = run->executable.text;
-  for (int k = 0; k < run->argc; k++) argv[1 + k] = run->argv[k];
-  for (int k = 0; k < NUM_MORE; k++) argv[1 + run->argc + k] = more[k];
-  const struct process process = {.argv = argv, .log = "/dev/null", .one_thread = p->threads == 1};
-  const double begun = clock_now(), limit = 10 * point->rough + START;
-  pid_t child;
-  int state = 0;
-  status result = process_start(&process, &child);
-  free(argv);
-  if (result != OK) return result;
-  if (!wait_until(child, limit, &state)) {
-    point->reason =
-      text_make("its timed run takes longer than %.3g s, ten times the untimed one", limit);
-    return OK;
-  }
-  const double wall = clock_now() - begun;
-  json_t *facts = json_load_file(json.text, 0, NULL);
+  const struct timed_request request = {&point->timed, &p->cores, p->threads,
+                                        10 * point->rough + START, json.text};
+  struct timed timed;
+  TRY(timed_once(&request, &timed));
+  p->wall += timed.wall;
+  p->others += timed.others;
   const int before = point->taken[arm];
-  take_facts(point, arm, wall, facts);
-  json_decref(facts);
-  unlink(json.text);
-  if (point->taken[arm] > before)
-    result = note_time(p, point, arm, point->setup[arm][point->taken[arm] - 1]);
-  return result;
+  if (timed.stopped)
+    point->reason =
+      text_make("its timed run takes longer than %.3g s, ten times the untimed one", request.limit);
+  else
+    take_facts(point, arm, &timed);
+  json_decref(timed.facts);
+  return point->taken[arm] > before ? note_time(p, point, arm, &timed) : OK;
 }
 
-/* Once without taking the time, for the machine's sake: its clock, its caches, the file's pages. */
+/* With the shortest that is to be timed. */
 static status warm_up(struct precision *p)
 {
   int shortest = -1;
@@ -182,22 +138,7 @@ static status warm_up(struct precision *p)
     if (!point->timed.argc || point->taken[0] == p->repeat) continue;
     if (shortest < 0 || point->rough < p->point[shortest].rough) shortest = k;
   }
-  if (shortest < 0) return OK;
-  const struct run *run = &p->point[shortest].timed;
-  const char **argv = calloc((size_t)run->argc + 3, sizeof *argv);
-  if (!argv) return status_set(ERR_MEMORY, "out of memory");
-  argv[0] = run->executable.text;
-  for (int k = 0; k < run->argc; k++) argv[1 + k] = run->argv[k];
-  argv[1 + run->argc] = "--quiet";
-  const struct process process = {.argv = argv, .log = "/dev/null", .one_thread = p->threads == 1};
-  const double begun = clock_now(), enough = 0.5;
-  status result = OK;
-  for (int k = 0; k < 50 && result == OK && (k == 0 || clock_now() - begun < enough); k++) {
-    int code;
-    result = process_wait(&process, &code);
-  }
-  free(argv);
-  return result;
+  return shortest < 0 ? OK : timed_warm_up(&p->point[shortest].timed, &p->cores, p->threads);
 }
 
 /* --- the rounds --- */
@@ -216,7 +157,7 @@ static double left_to_do(const struct precision *p)
 /* Turn number t of a round: which point and arm, there or back. */
 static status take_turn(struct precision *p, long round, int t)
 {
-  const int turns = p->n * arms_of(p), at = round % 2 ? turns - 1 - t : t;
+  const int at = timed_turn(round, t, p->n * arms_of(p));
   struct point *point = &p->point[at / arms_of(p)];
   const int arm = at % arms_of(p);
   if (!point->timed.argc || point->reason || point->taken[arm] > round) return OK;
@@ -370,6 +311,7 @@ status times_take(struct precision *p)
 {
   double load[1] = {0};
   if (getloadavg(load, 1) == 1) p->load = load[0];
+  p->cores = cores_idle_first();
   TRY(prepare(p));
   TRY(take_earlier(p));
   TRY(warm_up(p));

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,9 +14,20 @@
 
 enum { NOT_FOUND = 127 }; /* as in the shell */
 
-static void become(const struct process *p)
+static void stay_on(const int *cores, int n)
 {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (int k = 0; k < n; k++) CPU_SET(cores[k], &set);
+  if (n > 0 && sched_setaffinity(0, sizeof set, &set) == 0) setenv("OMP_PROC_BIND", "true", 1);
+}
+
+/* Ends with its parent, at once: what lived on for a while could write over the results of the one
+ * that is started in its place. */
+static void become(const struct process *p, pid_t parent)
+{
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) return; /* it was killed before that */
   const int log = open(p->log ? p->log : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (p->log || p->output > 0) dup2(log, STDERR_FILENO);
   if (p->output > 0)
@@ -28,6 +40,8 @@ static void become(const struct process *p)
     setenv("OMP_NUM_THREADS", "1", 1);
     setenv("OMP_PROC_BIND", "false", 1); /* or all children would sit on the first core */
   }
+  setenv("OMP_WAIT_POLICY", "passive", 0); /* spinning threads starve those of other runs */
+  stay_on(p->cores, p->num_cores);
   if (p->most_memory > 0) { /* of data, not of addresses, of which a GPU's driver takes many */
     const rlim_t most = (rlim_t)p->most_memory << 20;
     setrlimit(RLIMIT_DATA, &(struct rlimit){most, most});
@@ -38,12 +52,13 @@ static void become(const struct process *p)
 
 status process_start(const struct process *process, pid_t *child)
 {
+  const pid_t parent = getpid();
   fflush(NULL);
   *child = fork();
   if (*child < 0)
     return status_set(ERR_IO, "cannot start '%s': %s", process->argv[0], strerror(errno));
   if (*child == 0) {
-    become(process);
+    become(process, parent);
     fprintf(stderr, "cannot start '%s': %s\n", process->argv[0], strerror(errno));
     _exit(NOT_FOUND); /* the child's way out: returning would run the parent's code twice */
   }

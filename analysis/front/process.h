@@ -11,6 +11,8 @@ struct process {
   const char *log;         /* both outputs go to this file; NULL: they stay */
   int output;              /* standard output goes to this descriptor; 0: to the log */
   int one_thread;          /* OMP_NUM_THREADS=1, not bound to a core */
+  const int *cores;        /* processors [num_cores] that it stays on, a thread on each */
+  int num_cores;           /* 0: any */
   long most_memory;        /* [MiB] of data that it may hold; 0: any */
 };
 

@@ -20,12 +20,23 @@ struct path run_file(const char *results, const char *id, const char *suffix)
   return path_of("%s/runs/%s.%s", results, id, suffix);
 }
 
-status queue_open(struct queue *queue, const char *results)
+static status begin(struct queue *queue, const char *results)
 {
   const struct path runs = path_of("%s/runs", results);
   *queue = (struct queue){.results = results, .jobs = processors(), .journal = {.file = -1}};
-  TRY(folder_make(runs.text));
+  return folder_make(runs.text);
+}
+
+status queue_open(struct queue *queue, const char *results)
+{
+  TRY(begin(queue, results));
   return journal_open(&queue->journal, results, 1);
+}
+
+status queue_open_part(struct queue *queue, const char *results, const char *part)
+{
+  TRY(begin(queue, results));
+  return journal_open_part(&queue->journal, results, part);
 }
 
 void run_release(struct run *run)
@@ -86,6 +97,7 @@ static status make_arguments(struct run *run, const struct run_request *r)
   add_flag(run, "--t-end", r->t_end);
   add_flag(run, "--frames", r->frames);
   add_flag(run, "--seed", r->seed);
+  add_flag(run, "--threads", r->threads);
   if (r->count_pairs) add(run, strdup("--count-pairs"));
   add_varied(run, r->vary, r->value);
   for (int k = 0; k < r->num_sets; k++) add_flag(run, "--set", r->set[k]);
@@ -148,8 +160,9 @@ static struct path plugin_of(const struct path *executable, const char *solver)
   return file;
 }
 
-static status identify(struct run *run, const char *scene)
+static status identify(struct run *run)
 {
+  const char *scene = run->argv[1];
   unsigned long long hash;
   TRY(executable_hash(&run->executable, &hash));
   for (int k = 0; k < run->argc; k++)
@@ -186,15 +199,24 @@ static void look_up(const struct queue *queue, struct run *run)
   run->reason = strdup(entry->reason);
 }
 
-status run_make(const struct run_request *request, struct run *run)
+/* All else from the arguments. */
+static status resolve(struct run *run)
 {
   struct variant variant = {"openmp", "f64", 2};
-  TRY(make_arguments(run, request));
   TRY(variant_choose(run->argc, run->argv, &variant));
   TRY(variant_executable(&variant, &run->executable));
   run->name = variant_name(&variant);
   run->what = join(run, 4);
-  return run->what ? identify(run, request->scene) : status_set(ERR_MEMORY, "out of memory");
+  run->threads = 1;
+  for (int k = 4; k + 1 < run->argc; k++)
+    if (strcmp(run->argv[k], "--threads") == 0) run->threads = atoi(run->argv[k + 1]);
+  return run->what ? identify(run) : status_set(ERR_MEMORY, "out of memory");
+}
+
+status run_make(const struct run_request *request, struct run *run)
+{
+  TRY(make_arguments(run, request));
+  return resolve(run);
 }
 
 static status make_room(struct queue *queue)
@@ -208,25 +230,43 @@ static status make_room(struct queue *queue)
   return OK;
 }
 
+/* Takes the run; one that is there already is released. */
+static status take(struct queue *queue, struct run *run, int *number)
+{
+  for (int k = 0; k < queue->n; k++)
+    if (strcmp(queue->run[k].id, run->id) == 0) {
+      *number = k;
+      run_release(run);
+      return OK;
+    }
+  look_up(queue, run);
+  *number = queue->n;
+  queue->run[queue->n++] = *run;
+  return OK;
+}
+
 status queue_add(struct queue *queue, const struct run_request *request, int *number)
 {
   struct run run = {.argc = 0};
   TRY(make_room(queue));
   const status result = run_make(request, &run);
-  for (int k = 0; result == OK && k < queue->n; k++)
-    if (strcmp(queue->run[k].id, run.id) == 0) {
-      *number = k;
-      run_release(&run);
-      return OK;
-    }
-  if (result != OK) {
-    run_release(&run);
-    return result;
+  if (result == OK) return take(queue, &run, number);
+  run_release(&run);
+  return result;
+}
+
+status queue_add_arguments(struct queue *queue, const char *const *argv, int argc, int *number)
+{
+  struct run run = {.argv = calloc((size_t)argc + 1, sizeof(char *))};
+  status result = run.argv ? make_room(queue) : status_set(ERR_MEMORY, "out of memory");
+  for (int k = 0; k < argc && result == OK; k++) {
+    add(&run, strdup(argv[k]));
+    if (!run.argv[k]) result = status_set(ERR_MEMORY, "out of memory");
   }
-  look_up(queue, &run);
-  *number = queue->n;
-  queue->run[queue->n++] = run;
-  return OK;
+  if (result == OK) result = resolve(&run);
+  if (result == OK) return take(queue, &run, number);
+  run_release(&run);
+  return result;
 }
 
 double queue_known_time(const struct queue *queue, const struct run *run)
@@ -238,4 +278,22 @@ double queue_known_time(const struct queue *queue, const struct run *run)
       return e->seconds;
   }
   return 0;
+}
+
+static double typical_time(const struct queue *queue)
+{
+  double sum = 0;
+  int n = 0;
+  for (int k = 0; k < queue->n; k++)
+    if (queue->run[k].finished) {
+      sum += queue->run[k].seconds;
+      n++;
+    }
+  return n > 0 ? sum / n : 10;
+}
+
+double queue_expected_time(const struct queue *queue, const struct run *run)
+{
+  const double known = queue_known_time(queue, run);
+  return known > 0 ? known : typical_time(queue);
 }

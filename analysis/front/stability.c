@@ -117,15 +117,15 @@ static status take_numbers(const struct typed *t, struct stability *s, double *l
   return OK;
 }
 
-/* The name of a scene's folder: a file's without its path. */
+/* The name of a scene's folder: a file's without its path; a map has one of its own. */
 static struct path scene_folder(const struct stability *s)
 {
   const char *slash = strrchr(s->scene, '/');
   struct path name = path_of("%s", slash ? slash + 1 : s->scene);
   char *dot = strrchr(name.text, '.');
   if (dot) *dot = '\0';
-  return path_of("%s/stability/%s%s%s", s->results, name.text, s->dim ? "-" : "",
-                 s->dim ? s->dim : "");
+  return path_of("%s/stability/%s%s%s%s%s", s->results, name.text, s->dim ? "-" : "",
+                 s->dim ? s->dim : "", s->map.key ? "-" : "", s->map.key ? s->map.key : "");
 }
 
 /* A quick study has twice the spacing and a quarter of the time, unless they were given. */

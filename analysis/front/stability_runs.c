@@ -144,8 +144,9 @@ static int told_word(const char *log, const char *name, const char *word)
 /* A method that takes its pressure from a speed of sound, and does not divide its steps by it. */
 static double explicit_sound(const char *log)
 {
-  const double c = told_number(log, "c");
-  return isnan(c) || !isnan(told_number(log, "cfl")) ? 0 : c;
+  const double c = told_number(log, "c"), cfl = told_number(log, "cfl");
+  const int divides = !isnan(cfl) && !(told_number(log, "max_substeps") <= 1);
+  return isnan(c) || divides ? 0 : c;
 }
 
 static void take_told(struct candidate_solver *c, const char *log)

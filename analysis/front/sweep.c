@@ -3,14 +3,39 @@
 #include <string.h>
 
 #include "arguments.h"
+#include "emit.h"
 #include "figure.h"
 #include "front.h"
+#include "manifest.h"
 #include "plan.h"
+#include "timed.h"
 
 struct request {
   const char *plan, *results, *jobs, *timeout, *memory;
+  const char *engine, *folder, *batch; /* --emit ENGINE FOLDER */
+  const char *manifest, *task;
+  const char *timed, *threads; /* repetitions of timed runs, and their threads */
   int fresh, dry_run, quiet;
 };
+
+/* --emit has two values, which are taken out of argv. */
+static status take_emit(struct request *r, int *argc, char **argv)
+{
+  int kept = 2;
+  for (int i = 2; i < *argc; i++) {
+    if (strcmp(argv[i], "--emit") != 0) {
+      argv[kept++] = argv[i];
+      continue;
+    }
+    if (i + 2 >= *argc)
+      return user_error("--emit needs two values: slurm or parallel, and a folder");
+    r->engine = argv[++i];
+    r->folder = argv[++i];
+    TRY(emit_check(r->engine));
+  }
+  argv[ *argc = kept] = NULL;
+  return OK;
+}
 
 static status parse(struct request *r, int argc, char **argv)
 {
@@ -18,13 +43,30 @@ static status parse(struct request *r, int argc, char **argv)
     {"--results", &r->results, NULL}, {"--jobs", &r->jobs, NULL},
     {"--timeout", &r->timeout, NULL}, {"--memory", &r->memory, NULL},
     {"--fresh", NULL, &r->fresh},     {"--dry-run", NULL, &r->dry_run},
-    {"--quiet", NULL, &r->quiet},
+    {"--quiet", NULL, &r->quiet},     {"--batch", &r->batch, NULL},
+    {"--task", &r->task, NULL},       {"--manifest", &r->manifest, NULL},
+    {"--timed", &r->timed, NULL},     {"--threads", &r->threads, NULL},
   };
   int names = 0;
   const struct arguments what = {"sweep", flags, sizeof flags / sizeof *flags, &r->plan, 1, &names};
-  *r = (struct request){.results = "results"};
+  *r = (struct request){.results = NULL};
+  TRY(take_emit(r, &argc, argv));
   TRY(arguments_parse(&what, argc, argv));
-  return names == 1 ? OK : user_error("sweep needs a plan; 'sphbench list plans' lists them");
+  const int settled = r->results || r->timeout || r->memory || r->fresh || r->dry_run ||
+                      r->engine || r->timed || r->threads;
+  if (!r->results) r->results = "results";
+  if (!r->manifest != !r->task) return user_error("sweep: --manifest and --task go together");
+  if (r->timed && r->engine)
+    return user_error("sweep: --timed does not go with --emit: time where nothing else runs");
+  if (r->batch && !r->engine) return user_error("sweep: --batch goes with --emit");
+  if (r->manifest && names)
+    return user_error("sweep: '%s' found, but a manifest takes the place of a plan", r->plan);
+  if (r->manifest && settled)
+    return user_error("sweep: with --manifest only --task, --jobs and --quiet are allowed; the "
+                      "rest stands in the manifest");
+  return names == 1 || r->manifest
+           ? OK
+           : user_error("sweep needs a plan; 'sphbench list plans' lists them");
 }
 
 static void show_plan(const struct queue *queue)
@@ -50,8 +92,9 @@ static void show_plan(const struct queue *queue)
          todo, known, unknown);
 }
 
-/* Counts of how the runs ended; ERR_RUN where one crashed, since that is a fault of the program. */
-static status conclude(const struct queue *queue, int quiet)
+/* Counts of how the runs ended; ERR_RUN where one crashed, since that is a fault of the program. A
+ * whole plan of which nothing was run is a mistake, a task of it need not be. */
+static status conclude(const struct queue *queue, int quiet, int whole)
 {
   int count[NUM_OUTCOMES] = {0}, ended = 0;
   for (int k = 0; k < queue->n; k++)
@@ -65,7 +108,7 @@ static status conclude(const struct queue *queue, int quiet)
       if (count[k]) printf(" %d %s", count[k], outcome_words[k]);
     printf("; %d done now\n", queue->done);
   }
-  if (count[OUTCOME_UNABLE] == ended)
+  if (whole && count[OUTCOME_UNABLE] == ended)
     return user_error("sweep: nothing was run: %s", ended ? queue->run[0].reason : "no run");
   if (count[OUTCOME_CRASHED])
     return status_set(ERR_RUN, "%d of %d runs crashed; the journal and the logs say how",
@@ -87,6 +130,24 @@ static status take_limits(const struct request *r, struct queue *queue)
   return user_error("--timeout: '%s' found, allowed is a number of seconds above 0", r->timeout);
 }
 
+/* After the untimed runs, which fill all cores. */
+static status take_times(const struct request *r, const struct plan *plan,
+                         const struct queue *queue)
+{
+  struct timings_settings how = {.threads = 1, .fresh = r->fresh, .quiet = r->quiet};
+  TRY(argument_whole("--timed", r->timed ? r->timed : plan->timed, 2, 1000, &how.repeat));
+  TRY(argument_whole("--threads", r->threads, 1, MOST_CORES, &how.threads));
+  return how.repeat ? timings_take(queue, &how) : OK;
+}
+
+static status emit(const struct request *r, struct queue *queue)
+{
+  struct emit what = {.engine = r->engine, .folder = r->folder, .plan = r->plan, .fresh = r->fresh};
+  TRY(argument_whole("--batch", r->batch, 1, 1000000, &what.batch));
+  TRY(argument_whole("--jobs", r->jobs, 1, 256, &what.jobs));
+  return emit_write(&what, queue);
+}
+
 static status work(const struct request *r, const struct plan *plan, struct queue *queue)
 {
   struct names solvers = {NULL, 0};
@@ -100,8 +161,28 @@ static status work(const struct request *r, const struct plan *plan, struct queu
     show_plan(queue);
     return OK;
   }
+  if (r->engine) return emit(r, queue);
   TRY(queue_work(queue));
-  return conclude(queue, r->quiet);
+  TRY(take_times(r, plan, queue));
+  return conclude(queue, r->quiet, 1);
+}
+
+/* One task of a manifest. Its engine gives it one processor, unless --jobs says more. */
+static status work_task(const struct request *r)
+{
+  struct queue queue;
+  json_t *manifest;
+  long task = 0, jobs = 1;
+  TRY(argument_whole("--task", r->task, 0, MOST_TASKS, &task));
+  TRY(argument_whole("--jobs", r->jobs, 1, 256, &jobs));
+  TRY(manifest_open(r->manifest, task, &queue, &manifest));
+  queue.jobs = (int)jobs;
+  queue.quiet = r->quiet;
+  status result = queue_work(&queue);
+  if (result == OK) result = conclude(&queue, r->quiet, 0);
+  queue_close(&queue);
+  json_decref(manifest);
+  return result;
 }
 
 status verb_sweep(int argc, char **argv)
@@ -110,6 +191,7 @@ status verb_sweep(int argc, char **argv)
   struct queue queue;
   struct plan *plan;
   TRY(parse(&r, argc, argv));
+  if (r.manifest) return work_task(&r);
   TRY(plan_read(r.plan, &plan));
   status result = queue_open(&queue, r.results);
   if (result == OK) {

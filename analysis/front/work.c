@@ -75,12 +75,23 @@ static status start(struct work *w, struct child *child, int number)
   return started;
 }
 
+/* Threads of the runs that are at work. */
+static int running_threads(const struct work *w)
+{
+  int n = 0;
+  for (int j = 0; j < w->jobs; j++)
+    if (w->child[j].pid) n += w->queue->run[w->child[j].run].threads;
+  return n;
+}
+
 static void start_some(struct work *w)
 {
   for (int j = 0; j < w->jobs && w->failed == OK && !stop_signal; j++) {
     if (w->child[j].pid) continue;
     while (w->next < w->queue->n && w->queue->run[w->next].finished) w->next++;
     if (w->next == w->queue->n) return;
+    const int taken = running_threads(w);
+    if (taken > 0 && taken + w->queue->run[w->next].threads > w->jobs) return;
     fail(w, start(w, &w->child[j], w->next++));
   }
 }
@@ -215,19 +226,6 @@ static void take_end(struct work *w, struct child *child, int state, long peak)
 
 /* --- progress --- */
 
-/* Seconds per run where nothing is known of it: the mean of those that are done, else 10 s. */
-static double typical(const struct work *w)
-{
-  double sum = 0;
-  int n = 0;
-  for (int k = 0; k < w->queue->n; k++)
-    if (w->queue->run[k].finished) {
-      sum += w->queue->run[k].seconds;
-      n++;
-    }
-  return n > 0 ? sum / n : 10;
-}
-
 static double running_for(const struct work *w, int number)
 {
   for (int j = 0; j < w->jobs; j++)
@@ -238,13 +236,11 @@ static double running_for(const struct work *w, int number)
 static void show(struct work *w, const char *const *notes)
 {
   double done = 0, all = 0;
-  const double guess = typical(w);
   const char *name = "";
   for (int k = 0; k < w->queue->n; k++) {
     const struct run *run = &w->queue->run[k];
     if (!notes[k]) continue; /* was finished before */
-    const double known = queue_known_time(w->queue, run);
-    const double whole = run->finished ? run->seconds : known > 0 ? known : guess;
+    const double whole = run->finished ? run->seconds : queue_expected_time(w->queue, run);
     const double so_far = run->finished ? whole : running_for(w, k);
     if (!run->finished && so_far > 0) name = notes[k];
     all += whole;

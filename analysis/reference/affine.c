@@ -1,22 +1,8 @@
 /* Affine motions of a free drop, x = F X, by CVODE's Adams method at two tolerances. */
 #include "internal.h"
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <string.h>
-#include <sundials/sundials_config.h>
-#include <sundials/sundials_context.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-/* What changed between SUNDIALS 6 and 7. */
-#if SUNDIALS_VERSION_MAJOR >= 7
-#define CREATE_CONTEXT(context) SUNContext_Create(SUN_COMM_NULL, context)
-#define SILENCE(context, memory) ((void)(memory), SUNContext_ClearErrHandlers(context))
-#else
-#define CREATE_CONTEXT(context) SUNContext_Create(NULL, context)
-#define SILENCE(context, memory) ((void)(context), CVodeSetErrFile(memory, NULL))
-#endif
-
-enum { LONGEST = 18, MAX_STEPS = 2000000 };
+enum { LONGEST = 18 };
 static const double LOOSE = 1e-13, TIGHT = 1e-15;
 
 /* y' = rhs(y), n unknowns of magnitude 1, lengths first and then their rates, from `start`. */
@@ -24,54 +10,31 @@ struct motion {
   const double *start;
   int n, dim;
   double B;
-  CVRhsFn rhs;
+  int (*rhs)(double t, const double *y, double *dy, void *motion);
+  double *end;
 };
 
-/* CVODE's objects, so that one function frees whatever was made. */
-struct integrator {
-  SUNContext context;
-  void *memory;
-  N_Vector y;
-  SUNNonlinearSolver iteration;
-};
-
-static void close_integrator(struct integrator *s)
+static int arrive(int k, const double *y, void *motion)
 {
-  if (s->memory) CVodeFree(&s->memory);
-  if (s->iteration) SUNNonlinSolFree(s->iteration);
-  if (s->y) N_VDestroy(s->y);
-  if (s->context) SUNContext_Free(&s->context);
+  const struct motion *m = motion;
+  (void)k;
+  memcpy(m->end, y, m->n * sizeof *y);
+  return REFERENCE_OK;
 }
 
-static bool open_integrator(struct integrator *s, const struct motion *m, double tolerance)
+static enum reference_status integrate(struct motion m, double tolerance, double t, double *y)
 {
-  if (CREATE_CONTEXT(&s->context)) return false;
-  s->y = N_VNew_Serial(m->n, s->context);
-  s->memory = CVodeCreate(CV_ADAMS, s->context);
-  if (!s->y || !s->memory || SILENCE(s->context, s->memory)) return false;
-  s->iteration = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
-  memcpy(N_VGetArrayPointer(s->y), m->start, m->n * sizeof *m->start);
-  return s->iteration && !CVodeInit(s->memory, m->rhs, 0, s->y) &&
-         !CVodeSStolerances(s->memory, tolerance, tolerance) &&
-         !CVodeSetNonlinearSolver(s->memory, s->iteration) &&
-         !CVodeSetUserData(s->memory, (void *)m) && !CVodeSetMaxNumSteps(s->memory, MAX_STEPS);
-}
-
-static enum reference_status integrate(const struct motion *m, double tolerance, double t,
-                                       double *y)
-{
-  struct integrator s = {0};
-  int flag = CV_MEM_FAIL;
-  if (open_integrator(&s, m, tolerance)) {
-    double reached = 0;
-    flag = t == 0 ? CV_SUCCESS : CVode(s.memory, t, s.y, &reached, CV_NORMAL);
-    memcpy(y, N_VGetArrayPointer(s.y), m->n * sizeof *y);
-  }
-  close_integrator(&s);
-  if (flag >= 0) return REFERENCE_OK;
-  return ref_fail(REFERENCE_NOT_CONVERGED,
-                  "affine motion: CVODE returned %d before t = %g at tolerance %g", flag, t,
-                  tolerance);
+  const struct ref_ode ode = {
+    .name = "affine motion",
+    .n = m.n,
+    .relative = tolerance,
+    .absolute = tolerance,
+    .rate = m.rhs,
+    .visit = arrive,
+    .user = &m,
+  };
+  m.end = y;
+  return ref_ode_integrate(&ode, m.start, (struct ref_times){&t, 1});
 }
 
 /* y from both runs' tighter one; *error is their largest difference over the lengths, relative to
@@ -80,8 +43,8 @@ static enum reference_status integrate_twice(const struct motion *m, double t, d
                                              double *error)
 {
   double loose[LONGEST], size = 0;
-  enum reference_status status = integrate(m, LOOSE, t, loose);
-  if (!status) status = integrate(m, TIGHT, t, y);
+  enum reference_status status = integrate(*m, LOOSE, t, loose);
+  if (!status) status = integrate(*m, TIGHT, t, y);
   if (status) return status;
   *error = 0;
   for (int i = 0; i < m->n / 2; i++) {
@@ -104,12 +67,11 @@ static double axes_pressure(const struct motion *m, const double *y)
   return above / below;
 }
 
-static int axes_rhs(double t, N_Vector at, N_Vector rate, void *user)
+static int axes_rhs(double t, const double *y, double *dy, void *user)
 {
   (void)t;
   const struct motion *m = user;
-  const double *y = N_VGetArrayPointer(at), P = axes_pressure(m, y);
-  double *dy = N_VGetArrayPointer(rate);
+  const double P = axes_pressure(m, y);
   for (int i = 0; i < m->dim; i++) {
     dy[i] = y[m->dim + i];
     dy[m->dim + i] = 2 * P / y[i] - sq(m->B) * y[i];
@@ -166,13 +128,12 @@ static double affine_pressure(const struct motion *m, const double *y, double *i
   return (gradient_traces(d, y + d * d, inverse).squared + d * sq(m->B)) / below;
 }
 
-static int affine_rhs(double t, N_Vector at, N_Vector rate, void *user)
+static int affine_rhs(double t, const double *y, double *dy, void *user)
 {
   (void)t;
   const struct motion *m = user;
   const int d = m->dim;
-  const double *y = N_VGetArrayPointer(at);
-  double *dy = N_VGetArrayPointer(rate), inverse[9];
+  double inverse[9];
   const double P = affine_pressure(m, y, inverse);
   for (int i = 0; i < d; i++)
     for (int j = 0; j < d; j++) {
@@ -251,7 +212,7 @@ enum reference_status reference_axes_flow(const struct reference_axes *start, do
                                           struct reference_axes *end)
 {
   const int d = start->dim;
-  struct motion m = {NULL, 2 * d, d, start->B, axes_rhs};
+  struct motion m = {NULL, 2 * d, d, start->B, axes_rhs, NULL};
   struct quality quality;
   double y[LONGEST] = {0}, divergence = 0, fastest = 0;
   bool good = (d == 2 || d == 3) && isfinite(start->B) && isfinite(t);
@@ -280,7 +241,7 @@ enum reference_status reference_affine_flow(const struct reference_affine *start
                                             struct reference_affine *end)
 {
   const int d = start->dim;
-  struct motion m = {NULL, 2 * d * d, d, start->B, affine_rhs};
+  struct motion m = {NULL, 2 * d * d, d, start->B, affine_rhs, NULL};
   struct quality quality;
   double y[LONGEST] = {0}, inverse[9], sum = 0;
   bool good = (d == 2 || d == 3) && isfinite(start->B) && isfinite(t);

@@ -18,6 +18,24 @@ enum reference_status ref_fail(enum reference_status status, const char *format,
 #endif
   ;
 
+/* y' = rate(y), n unknowns, by CVODE's Adams method from t = 0 to times of one sign, rising in
+ * magnitude; visit gets y at the k-th and a status other than REFERENCE_OK ends the work. rate
+ * returns 0, or > 0 where the step must be smaller, < 0 where nothing helps. */
+struct ref_ode {
+  const char *name; /* for the message */
+  int n;
+  double relative, absolute; /* tolerances of the step's error */
+  int (*rate)(double t, const double *y, double *dy, void *user);
+  int (*visit)(int k, const double *y, void *user);
+  void *user;
+};
+struct ref_times {
+  const double *t;
+  int count;
+};
+enum reference_status ref_ode_integrate(const struct ref_ode *ode, const double *start,
+                                        struct ref_times times);
+
 /* Integral of f over [from, to], Gauss-Kronrod (61 points) on equal panels no longer than `panel`.
  * For analytic f with `panel` below its distance to the nearest singularity the error is rounding.
  */

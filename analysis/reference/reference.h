@@ -80,6 +80,23 @@ struct reference_patch_state {
 };
 struct reference_patch_state reference_square_patch_state(double t_omega);
 
+/* ODE. The same by computing: the free surface as a boundary integral over `nodes` points per side
+ * (16 to 512, a multiple of 4), advanced by CVODE to the rising times t_omega[count] in [0, 1.2];
+ * out[count]. Every error is the largest difference so far from a second run with half of the nodes
+ * and ten times the tolerance. With 128 nodes p_centre is within 1e-9 and the invariants, which are
+ * not enforced, within 3e-9 up to t omega = 1. Cost: about the square of the nodes. Beyond 1.2 the
+ * arms are thinner than the nodes' distance. Fails: bad arguments; GMRES's or CVODE's failure; no
+ * memory. Longuet-Higgins & Cokelet 1976, Proc. R. Soc. Lond. A 350, 1, for the idea. */
+struct reference_patch_instant {
+  struct reference_value p_centre, r_min; /* as in struct reference_patch_state */
+  double r_tip; /* distance of the node next to the corner, L: goes to that of the corner */
+  struct reference_patch_invariants invariants;
+  struct reference_vec *side; /* in: room for `nodes` points of the side that began at x = 1/2,
+                                 anticlockwise, in L; or NULL */
+};
+enum reference_status reference_square_patch_evolution(int nodes, const double *t_omega, int count,
+                                                       struct reference_patch_instant *out);
+
 /* EXACT. Growth rate, in omega, of the surface mode m >= 1 of a rotating CIRCULAR disc: sqrt(m -
  * 1). From s = +-i +- sqrt(m - 1) (rotating frame) of the linearised potential problem. */
 double reference_disc_growth_rate(int m);
@@ -307,6 +324,52 @@ struct reference_motion {
   double r, rdot;
 };
 struct reference_motion reference_two_particle_motion(const struct reference_orbit *o, double t);
+
+/* ---- Referees: systems solved by other people's programs (algebra.c, nonlinear.c) ---------------
+ */
+
+/* y = A x for any x[n]; A symmetric and positive definite. */
+struct reference_system {
+  int n;
+  void (*apply)(const double *x, double *y, void *user);
+  void *user;
+};
+
+/* x[n] = A^-1 b by LAPACK's Cholesky factors of the matrix written out, n <= 5000, with one step of
+ * refinement: what an iteration on the same system converges to.
+ * asymmetry: largest |A_ij - A_ji| over the largest |A_ij|; residual: |b - A x|/|b|.
+ * Fails: n out of range, asymmetry >= 1e-6; not positive definite; no memory. */
+struct reference_dense {
+  double asymmetry, residual;
+};
+enum reference_status reference_dense_solve(const struct reference_system *s, const double *b,
+                                            double *x, struct reference_dense *quality);
+
+/* The same by SUNDIALS' SUNLinSol_PCG from x as it is, with Jacobi's preconditioner, until |r| <=
+ * tolerance |b|. Fails: not converged (x and iterations are what was reached); no memory. */
+struct reference_pcg {
+  const double *diagonal; /* [n] */
+  double tolerance;
+  int max_iterations, iterations; /* iterations: those used */
+};
+enum reference_status reference_pcg_solve(const struct reference_system *s, const double *b,
+                                          double *x, struct reference_pcg *how);
+
+/* By SUNDIALS' KINSOL from x[n] as it is, in units in which x and f are of order 1:
+ * x = f(x) by iteration with Anderson's acceleration over `history` steps, until the last change is
+ * below tolerance; f(x) = 0 by Newton's method with a line search and GMRES over `history` vectors,
+ * until max |f| is. Fails: not converged (x is what was reached). */
+struct reference_equations {
+  int n;
+  void (*function)(const double *x, double *f, void *user);
+  void *user;
+  double tolerance;
+  int max_iterations, history;
+};
+enum reference_status reference_fixed_point(const struct reference_equations *e, double *x,
+                                            int *iterations);
+enum reference_status reference_newton_krylov(const struct reference_equations *e, double *x,
+                                              int *iterations);
 
 /* ---- Series and tables (series.c, tables.c, table_data.c) ---------------------------------------
  */

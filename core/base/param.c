@@ -8,6 +8,8 @@
 
 static int is_choice(const struct param *p) { return strchr(p->unit, '|') != NULL; }
 
+static int is_whole(const struct param *p) { return strcmp(p->unit, WHOLE) == 0; }
+
 const struct param *param_find(const struct param *params, int n, const char *name)
 {
   for (int i = 0; i < n; i++)
@@ -45,6 +47,9 @@ status param_parse(const struct param *p, const char *text, const char *where, d
   while (*end == ' ') end++;
   if (end == text || *end || isnan(number) || (errno == ERANGE && fabs(number) > 1))
     return user_error("%s: %s is '%s', which is not a number [%s]", where, p->name, text, p->unit);
+  if (is_whole(p) && number != rint(number))
+    return user_error("%s: %s is %s, allowed are whole numbers from %g to %g", where, p->name, text,
+                      p->low, p->high);
   if (number < p->low || number > p->high)
     return user_error("%s: %s is %s, allowed is %g to %g [%s]", where, p->name, text, p->low,
                       p->high, p->unit);

@@ -8,7 +8,8 @@ extern "C" {
 #endif
 
 /* One parameter. A unit that contains '|' lists the words of a choice, whose value is the word's
- * number from 0. */
+ * number from 0. A parameter of unit WHOLE takes whole numbers only. */
+#define WHOLE "count"
 struct param {
   const char *name;
   double initial, low, high; /* default and allowed range, both ends included */

@@ -77,6 +77,9 @@ void result_facts_start(struct h5 *h, const struct run_facts *facts)
   h5_put_integer(h, run, (struct h5_label){"dim", "1", "dimensions of space"}, facts->dim);
   put_status(h, run, RUN_RUNNING, NULL);
   put_facts(h, "/run/parameters", facts->num_parameters, facts->parameters);
+  if (facts->num_warnings > 0)
+    h5_put_texts(h, run, (struct h5_label){"warnings", "1", "what was told before the run"},
+                 facts->num_warnings, facts->warnings);
   if (facts->provenance) {
     put_provenance(h, facts->provenance);
     put_circumstances(h, facts->provenance);
@@ -97,7 +100,8 @@ static void put_table(struct h5 *h, const char *path, const struct fact_table *t
     const hid_t space = H5Dget_space(data);
     const long long there = H5Sget_simple_extent_npoints(space);
     H5Sclose(space);
-    h5_append(h, data, there, table->rows - there, H5T_NATIVE_DOUBLE, column->values + there);
+    if (table->rows > there)
+      h5_append(h, data, there, table->rows - there, H5T_NATIVE_DOUBLE, column->values + there);
     H5Dclose(data);
   }
   H5Gclose(group);

@@ -65,6 +65,14 @@ static json_t *metrics(const struct run_facts *facts)
   return object;
 }
 
+static json_t *warnings(const struct run_facts *facts)
+{
+  json_t *list = json_array();
+  for (int i = 0; i < facts->num_warnings; i++)
+    json_array_append_new(list, text(facts->warnings[i]));
+  return list;
+}
+
 static json_t *judged(const struct run_facts *facts)
 {
   json_t *list = json_array();
@@ -140,6 +148,7 @@ static json_t *whole(const struct run_facts *f)
                       json_pack("[f, f, f]", f->period[0], f->period[1], f->period[2]));
   json_object_set_new(object, "parameters", values_of(f->num_parameters, f->parameters));
   json_object_set_new(object, "parameter_units", units_of(f->num_parameters, f->parameters));
+  json_object_set_new(object, "warnings", warnings(f));
   json_object_set_new(object, "judged", judged(f));
   json_object_set_new(object, "speed_max", number(f->speed_max));
   json_object_set_new(object, "energy_growth", number(f->energy_growth));

@@ -352,7 +352,11 @@ status result_read_array(struct result_read *r, long k, const char *name,
     return failed(r, "it has no '%s', only %s", name, names);
   }
   TRY(open_source(r, path, &s));
-  const status result = read_rows(r, path, &s, (hsize_t)r->first[k], (hsize_t)r->count[k], out);
+  const hsize_t columns = s.size[1];
+  const status result =
+    position && columns < 2
+      ? failed(r, "'%s' has %d columns, positions have at least 2", path, (int)columns)
+      : read_rows(r, path, &s, (hsize_t)r->first[k], (hsize_t)r->count[k], out);
   close_source(&s);
   return result;
 }

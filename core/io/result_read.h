@@ -29,7 +29,8 @@ long result_read_frames(const struct result_read *file);
 double result_read_time(const struct result_read *file, long k);
 
 /* Quantity `name` ("position", "velocity", "id", ...) of frame k, sorted as it was written (by
- * label). An unknown name is answered with the names that there are. */
+ * label). An unknown name is answered with the names that there are. Positions have at least 2
+ * components. */
 status result_read_array(struct result_read *file, long k, const char *name,
                          struct result_numbers *numbers);
 

@@ -65,6 +65,8 @@ struct run_facts {
   int num_parameters;
   enum run_status status;
   const char *reason;          /* one sentence, NULL when there is nothing to say */
+  const char *const *warnings; /* clauses, told before the run started [num_warnings] */
+  int num_warnings;
   const struct judged *judged; /* in the order of time */
   int num_judged;
   double energy_growth; /* largest, as it is judged [1]; NaN: not to be told */

@@ -119,6 +119,21 @@ void shelf_array(struct shelf *s, struct h5_label label, struct shelf_array a)
     load(s, label.name, array.type, &array);
 }
 
+long shelf_rows(const struct shelf *s, const char *name)
+{
+  const long most_inflation = 1100; /* deflate makes at most 1/1032 of what it is given */
+  hsize_t dims[H5S_MAX_RANK] = {0}, bytes = 0;
+  if (s->failed != OK || H5Lexists(s->h5.file, name, H5P_DEFAULT) <= 0) return -1;
+  const hid_t data = H5Dopen2(s->h5.file, name, H5P_DEFAULT);
+  if (data < 0) return -1;
+  const hid_t space = H5Dget_space(data);
+  const int rank = H5Sget_simple_extent_dims(space, dims, NULL);
+  H5Sclose(space);
+  H5Dclose(data);
+  const int known = rank > 0 && H5Fget_filesize(s->h5.file, &bytes) >= 0;
+  return known && dims[0] / (hsize_t)most_inflation <= bytes ? (long)dims[0] : -1;
+}
+
 void shelf_number(struct shelf *s, struct h5_label label, double *value)
 {
   shelf_array(s, label, (struct shelf_array){SHELF_DOUBLE, 1, 0, value});

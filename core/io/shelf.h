@@ -31,6 +31,9 @@ struct shelf_array {
 void shelf_array(struct shelf *shelf, struct h5_label label, struct shelf_array array);
 void shelf_number(struct shelf *shelf, struct h5_label label, double *value);
 void shelf_whole(struct shelf *shelf, struct h5_label label, long *value);
+/* The rows that the array of this name has in a file that is read; -1: it has none of this name, or
+ * claims more than the file can hold. Before room is made for what the file says there is. */
+long shelf_rows(const struct shelf *shelf, const char *name);
 /* At most `size` bytes with the 0 at the end; longer ones are cut when saved. */
 void shelf_text(struct shelf *shelf, struct h5_label label, char *text, int size);
 

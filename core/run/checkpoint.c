@@ -77,6 +77,13 @@ static void walk_columns(struct shelf *s, const char *name, double **columns, in
   }
 }
 
+/* Has the file as many rows as it says? */
+static void check_rows(struct shelf *s, const char *name, long rows)
+{
+  if (s->failed == OK && rows != 0 && shelf_rows(s, name) != rows)
+    shelf_refuse(s, "its %s has %ld rows, it says %ld", name, shelf_rows(s, name), rows);
+}
+
 static void walk_record(struct shelf *s, const struct checkpoint *c)
 {
   struct record *r = c->record;
@@ -88,6 +95,8 @@ static void walk_record(struct shelf *s, const struct checkpoint *c)
   shelf_whole(s, label("record/iterations_counted", "1", "at the last sample"),
               &r->iterations_counted);
   shelf_number(s, label("record/next_sample", "s", "when the next one is due"), c->next_sample);
+  if (!s->saving) check_rows(s, "record/sample0", rows);
+  if (!s->saving) check_rows(s, "record/step0", steps);
   if (s->failed == OK && !s->saving) s->failed = record_make_room(r, rows, steps);
   walk_columns(s, "sample", r->sample, NUM_METRICS + 3, rows);
   walk_columns(s, "step", r->step, 3, steps);

@@ -32,6 +32,9 @@ void facts_start(struct facts *f, const struct options *o, const struct plan *pl
   f->run.particles = run->view->p.n;
   f->run.walls = run->view->p.n_all - run->view->p.n;
   for (int d = 0; d < DIM; d++) f->run.period[d] = (double)run->scene.period.c[d];
+  run_warnings(run, &f->warnings);
+  f->run.warnings = f->warnings.list;
+  f->run.num_warnings = f->warnings.n;
   f->run.residual_last = NAN;
 }
 

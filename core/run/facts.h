@@ -3,10 +3,12 @@
 #define FACTS_H
 #include "../io/provenance.h"
 #include "driver.h"
+#include "warn.h"
 
 struct facts {
   struct run_facts run;
   struct provenance provenance;
+  struct warnings warnings;
   struct fact metrics[NUM_METRICS], phases[NUM_PHASES], fields[MAX_FIELDS + 2];
   struct fact_column series[NUM_METRICS + 3], steps[3];
 };

@@ -1,5 +1,6 @@
 #include "restart.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,6 +135,16 @@ static void walk_clock(struct shelf *s, struct run *run)
   if (!s->saving) run->first_step = run->step;
 }
 
+/* A solver that has virtual particles keeps their positions under this name (solver.h). */
+static status check_virtual(struct shelf *s, struct run *run, long virtual)
+{
+  const struct store_field *f = store_find(&run->store, "X");
+  const int has = f && f->row.where == VIRTUAL;
+  const long rows = has && virtual > 0 ? shelf_rows(s, "fields/X") : 0;
+  if (virtual == rows) return s->failed;
+  return shelf_refuse(s, "it has %ld virtual particles and %ld positions of them", virtual, rows);
+}
+
 /* Particles per kind of field; a loading run takes in what emitters have made since the start. */
 static status walk_counts(struct shelf *s, struct run *run)
 {
@@ -144,9 +155,13 @@ static status walk_counts(struct shelf *s, struct run *run)
   shelf_whole(s, label("walls", "1", "wall particles"), &walls);
   shelf_whole(s, label("virtual", "1", "virtual particles"), &virtual);
   if (s->failed != OK || s->saving) return s->failed;
-  if (walls != walls_here || n < n_here || n > most || virtual < 0 || virtual > most)
+  if (walls != walls_here || n < n_here || n > most)
     return shelf_refuse(s, "it has %ld fluid and %ld wall particles, the scene %ld and %ld", n,
                         walls, n_here, walls_here);
+  if (shelf_rows(s, "fields/x") != n + walls)
+    return shelf_refuse(s, "it has %ld positions of %ld particles", shelf_rows(s, "fields/x"),
+                        n + walls);
+  TRY(check_virtual(s, run, virtual));
   s->failed = n > n_here ? store_insert_fluid(&run->store, (int)(n - n_here)) : OK;
   run->view->p.n = (int)n;
   run->view->p.n_all = (int)(n + walls);
@@ -171,6 +186,82 @@ static void walk_lists(struct shelf *s, struct run *run)
   run->density_is_current = (int)dense;
 }
 
+/* --- what was loaded, before anything is computed from it --- */
+
+/* A field of whole numbers below `most`, each of them once where it is a label. */
+static status check_numbers(struct shelf *s, struct run *run, const char *name, int most, int once)
+{
+  const struct store_field *f = store_public(&run->store, name);
+  const int n = f ? run->store.count[f->row.where] : 0;
+  if (n == 0) return s->failed;
+  int *number = malloc(sizeof(int) * (size_t)n);
+  char *seen = calloc(1, (size_t)most + 1);
+  if (!number || !seen) no_memory(s, sizeof(int) * (size_t)n);
+  if (number) memory_to_host(number, f->data, sizeof(int) * (size_t)n);
+  for (int i = 0; i < n && s->failed == OK; i++) {
+    if (number[i] < 0 || number[i] >= most || (once && seen[number[i]]))
+      shelf_refuse(s, "its fields/%s has %d, allowed are 0 to %d%s", name, number[i], most - 1,
+                   once ? ", each of them once" : "");
+    else
+      seen[number[i]] = 1;
+  }
+  free(seen);
+  free(number);
+  return s->failed;
+}
+
+/* Which body a wall particle belongs to is a number among reals. */
+static status check_bodies(struct shelf *s, struct run *run)
+{
+  const struct store_field *f = store_public(&run->store, "body");
+  const int n = f ? run->store.count[f->row.where] : 0, bodies = run->scene.num_bodies;
+  real *body = n > 0 ? malloc(sizeof(real) * (size_t)n) : NULL;
+  if (n == 0) return s->failed;
+  if (!body) return no_memory(s, sizeof(real) * (size_t)n);
+  memory_to_host(body, f->data, sizeof(real) * (size_t)n);
+  for (int i = run->view->p.n; i < n && s->failed == OK; i++)
+    if (!(body[i] >= 0 && body[i] <= (real)bodies && body[i] == rint(body[i])))
+      shelf_refuse(s, "its fields/body has %g, allowed are 0 to %d", (double)body[i], bodies);
+  free(body);
+  return s->failed;
+}
+
+static status check_clock(struct shelf *s, const struct run *run)
+{
+  if (!isfinite(run->time) || !isfinite(run->dt) || run->dt <= 0 || run->step < 0)
+    return shelf_refuse(s, "it stands at t = %g s, step %ld of %g s", run->time, run->step,
+                        run->dt);
+  for (int k = 0; k < MOST_EMITTERS; k++)
+    if (run->layers[k] < 0)
+      return shelf_refuse(s, "emitter %d has made %ld layers", k + 1, run->layers[k]);
+  return s->failed;
+}
+
+/* Also what a solver put in place of "auto" lies within the range of its parameter. */
+static status check_params(struct shelf *s, struct run *run)
+{
+  for (int k = 0; k < run->solver->num_params; k++) {
+    const struct param *p = &run->solver->params[k];
+    const double value = (double)*(const real *)((const char *)run->state + p->offset);
+    const double least = fmin(p->low, p->initial), most = fmax(p->high, p->initial);
+    if (!(value >= (double)(real)least && value <= (double)(real)most))
+      return shelf_refuse(s, "its solver/%s is %g, allowed is %g to %g", p->name, value, least,
+                          most);
+  }
+  return s->failed;
+}
+
+static status check_loaded(struct shelf *s, struct run *run)
+{
+  const int fluids = run->scene.num_fluids;
+  if (s->failed != OK || s->saving) return s->failed;
+  TRY(check_numbers(s, run, "id", run->view->p.n, 1));
+  TRY(check_numbers(s, run, "fluid", fluids > 1 ? fluids : 1, 0));
+  TRY(check_bodies(s, run));
+  TRY(check_params(s, run));
+  return s->failed;
+}
+
 status restart_prepare(struct run *run)
 {
   run->keeps_listed = 1;
@@ -184,10 +275,12 @@ status restart_walk(struct shelf *s, struct run *run)
   TRY(walk_counts(s, run));
   if (!s->saving) walk_fields(s, run); /* `changed` looks at them */
   if (!s->saving) walk_params(s, run);
+  TRY(check_loaded(s, run));
   walk_lists(s, run);
   walk_fields(s, run);
   walk_params(s, run);
   walk_clock(s, run);
+  if (!s->saving) TRY(check_clock(s, run));
   walk_iterations(s, run);
   walk_bodies(s, run);
   return s->failed;

@@ -288,6 +288,9 @@ static status finish(struct session *s, double seconds)
 static status dry_run(const struct session *s)
 {
   const struct run *run = s->run;
+  struct warnings warnings;
+  run_warnings(run, &warnings);
+  warnings_say(&warnings);
   printf("%s with %s (%s): %d fluid and %d wall particles, %ld steps of %g s\n", s->o->name,
          run->solver->name, SPHBENCH_VARIANT, run->view->p.n, run->view->p.n_all - run->view->p.n,
          s->steps, run->dt);
@@ -320,20 +323,26 @@ static int same_file(const char *a, const char *b)
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino && S_ISREG(one.st_mode);
 }
 
-/* What would only be found after the run: files in each other's way, a --json that cannot be. */
-static status check_outputs(const struct options *o, int from_file)
+/* Can this file be written? Nothing is left of the attempt. */
+static status try_path(const char *path, int allow_stream)
 {
   struct out_path out;
+  TRY(out_path_begin(&out, path, allow_stream));
+  out_path_discard(&out);
+  return OK;
+}
+
+/* What would only be found after the run: files in each other's way, or that cannot be. */
+static status check_outputs(const struct options *o, int from_file)
+{
   if (same_file(o->output, o->json))
     return user_error("-o and --json: both are '%s', allowed are two files", o->json);
   if (from_file && (same_file(o->output, o->name) || same_file(o->json, o->name)))
     return user_error("'%s' is the scene file, allowed is another file to write to", o->name);
-  if (!o->json) return OK;
-  if (strcmp(o->json, "-") == 0)
-    return o->explain ? user_error("--explain, --json -: both write to standard output") : OK;
-  TRY(out_path_begin(&out, o->json, 1));
-  out_path_discard(&out);
-  return OK;
+  if (o->json && strcmp(o->json, "-") == 0 && o->explain)
+    return user_error("--explain, --json -: both write to standard output");
+  if (o->json && strcmp(o->json, "-") != 0) TRY(try_path(o->json, 1));
+  return o->output ? try_path(o->output, 0) : OK;
 }
 
 static status start(struct session *s, int threads)
@@ -347,7 +356,7 @@ static status carry_out(struct session *s, int threads)
 {
   struct setting *set = &s->plan.setting;
   TRY(count_steps(s));
-  if (!s->o->dry_run) TRY(check_outputs(s->o, !set->benchmark));
+  TRY(check_outputs(s->o, !set->benchmark));
   TRY(run_create(s->plan.solver, s->plan.solver_values, &set->scene, set->asks, &s->run));
   plan_resolve(&s->plan, s->run);
   s->run->judge.planned = s->steps;
@@ -355,6 +364,7 @@ static status carry_out(struct session *s, int threads)
   if (s->o->dry_run) return dry_run(s);
   TRY(start(s, threads));
   TRY(prepare_checkpoint(s));
+  warnings_say(&s->facts.warnings);
   progress_begin(&s->bar, s->o->name, s->o->quiet);
   clock_reset();
   const double begun = clock_now();

@@ -190,14 +190,14 @@ static status check_inside(const struct scene *scene)
   return OK;
 }
 
-static double coordinate_rounding(const vec *x, int n)
+/* Nearer than this are two particles that differ by rounding, at most dx: of its own coordinates,
+ * so that one far away does not blur the others. */
+static double blur(vec x, double dx)
 {
   const double unit = sizeof(real) == sizeof(float) ? (double)FLT_EPSILON : DBL_EPSILON;
   double most = 0;
-  for (int i = 0; i < n; i++)
-    for (int d = 0; d < DIM; d++)
-      if (fabs((double)x[i].c[d]) > most) most = fabs((double)x[i].c[d]);
-  return 4 * unit * most;
+  for (int d = 0; d < DIM; d++) most = fmax(most, fabs((double)x.c[d]));
+  return fmin(fmax(1e-6 * dx, 4 * unit * most), dx);
 }
 
 static status coincidence(const struct scene *scene, const vec *x, int i, int j)
@@ -215,13 +215,12 @@ static status check_apart(const struct scene *scene, vec *x)
   const int n = scene->n, all = n + scene->n_wall;
   if (n > 0) memcpy(x, scene->x, (size_t)n * sizeof *x);
   if (all > n) memcpy(x + n, scene->wall_x, (size_t)(all - n) * sizeof *x);
-  const double rounding = coordinate_rounding(x, all), dx = scene->common.spacing;
-  const double reach = rounding > 1e-6 * dx ? rounding : 1e-6 * dx;
+  const double dx = scene->common.spacing;
   struct places places;
-  TRY(places_make(&places, x, all, reach > dx ? reach : dx, scene->period));
+  TRY(places_make(&places, x, all, dx, scene->period));
   int i = 0, other = -1;
   for (; i < all; i++)
-    if ((other = places_nearest(&places, x[i], reach, i, NULL)) >= 0) break;
+    if ((other = places_nearest(&places, x[i], blur(x[i], dx), i, NULL)) >= 0) break;
   places_free(&places);
   return other < 0 ? OK : coincidence(scene, x, i, other);
 }

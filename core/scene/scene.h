@@ -30,7 +30,7 @@ extern "C" {
   P(tension, 0, 0, 1e9, "N/m", "surface tension")                                               \
   P(tension_form, 0, 0, 1, "akinci|he", "cohesion and normals, or energy of the surface")       \
   P(jitter, 0, 0, 1, "dx", "largest random displacement at the start, per axis")                \
-  P(samples, 200, 1, 1e6, "1", "samples of the metrics over the run, at most one per step")
+  P(samples, 200, 1, 1e6, WHOLE, "samples of the metrics over the run, at most one per step")
 
 enum { WALLS_LATTICE, WALLS_AKINCI };
 
@@ -167,8 +167,8 @@ void scene_domain_around(struct scene *scene, double margin);
 
 /* Errors that a user can make with a scene: no particle, two particles at one place (named), a
  * place or velocity that is not finite, a fluid particle outside the domain. Two particles are at
- * one place when nearer than 1e-6 dx (or than the rounding of their coordinates). ERR_USER with a
- * sentence; ERR_MEMORY. Time and memory O(particles). */
+ * one place when nearer than 1e-6 dx, or than the rounding of their coordinates, but no more than
+ * dx. ERR_USER with a sentence; ERR_MEMORY. Time and memory O(particles). */
 status scene_check(const struct scene *scene);
 
 void scene_free(struct scene *scene);

@@ -68,13 +68,15 @@ static status check_motion(const struct scene_file *f, const char *key, const st
 static status check_shape(const struct scene_file *f, const char *list, unsigned k,
                           const struct file_shape *s)
 {
-  const int shapes = !!s->box + !!s->disc + !!s->ball + !!s->polygon;
+  const int shapes = !!s->box + !!s->disc + !!s->ball + !!s->polygon + !!s->particle;
   char key[KEY_ROOM];
   key_of(key, list, k, "");
   if (shapes != 1)
     return yaml_source_refuse(
-      f->yaml, key, "%s has %d shapes, allowed is one of box, disc, ball, polygon", key, shapes);
+      f->yaml, key, "%s has %d shapes, allowed is one of box, disc, ball, polygon, particle", key,
+      shapes);
   TRY(check_motion(f, key, s));
+  if (s->particle) return check_vector(f, key, "particle", s->particle_count);
   key_of(key, list, k, s->box ? ".box" : s->disc ? ".disc" : s->ball ? ".ball" : ".polygon");
   if (s->disc && f->said->dim == 3)
     return yaml_source_refuse(f->yaml, key, "%s is given, allowed in 3-D is ball", key);

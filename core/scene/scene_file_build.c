@@ -20,6 +20,7 @@ static status fill_shape(struct scene *scene, const struct file_shape *s)
   const struct file_ball *ball = s->disc ? s->disc : s->ball;
   if (s->box) return scene_fill_box(scene, vector(s->box->low), vector(s->box->high), v, NULL);
   if (ball) return scene_fill_disc(scene, vector(ball->centre), ball->radius, v);
+  if (s->particle) return scene_add(scene, vector(s->particle), v);
   const struct file_polygon *p = s->polygon;
   return scene_fill_polygon(scene, (const double(*)[2])p->corners, (int)p->corners_count,
                             p->z ? p->z[0] : 0, p->z ? p->z[1] : 0, v);

@@ -47,11 +47,12 @@ static const cyaml_schema_field_t motion_fields[] = {
   CYAML_FIELD_END,
 };
 
-#define SHAPES                                                                       \
-  CYAML_FIELD_MAPPING_PTR("box", LEFT_OUT, struct file_shape, box, box_fields),      \
-    CYAML_FIELD_MAPPING_PTR("disc", LEFT_OUT, struct file_shape, disc, ball_fields), \
-    CYAML_FIELD_MAPPING_PTR("ball", LEFT_OUT, struct file_shape, ball, ball_fields), \
-    CYAML_FIELD_MAPPING_PTR("polygon", LEFT_OUT, struct file_shape, polygon, polygon_fields)
+#define SHAPES                                                                                \
+  CYAML_FIELD_MAPPING_PTR("box", LEFT_OUT, struct file_shape, box, box_fields),               \
+    CYAML_FIELD_MAPPING_PTR("disc", LEFT_OUT, struct file_shape, disc, ball_fields),          \
+    CYAML_FIELD_MAPPING_PTR("ball", LEFT_OUT, struct file_shape, ball, ball_fields),          \
+    CYAML_FIELD_MAPPING_PTR("polygon", LEFT_OUT, struct file_shape, polygon, polygon_fields), \
+    VECTOR(particle, LEFT_OUT, struct file_shape)
 
 static const cyaml_schema_field_t fluid_fields[] = {
   SHAPES,

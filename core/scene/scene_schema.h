@@ -32,8 +32,9 @@ struct file_shape { /* of fluid and of bodies */
   struct file_box *box;
   struct file_ball *disc, *ball;
   struct file_polygon *polygon;
+  double *particle; /* the place of one */
   double *velocity;
-  unsigned velocity_count;
+  unsigned particle_count, velocity_count;
   struct file_rotation *rotation;
   double *rho0, *viscosity;   /* of a fluid of its own */
   double *density;            /* of a free body */

@@ -1,7 +1,23 @@
-/* lattice.h - what a full square or cubic lattice of spacing dx says about Jacobi iterations. */
+/* lattice.h - what a full square or cubic lattice of spacing dx says about Jacobi iterations and
+ * about forces of old velocities. */
 #ifndef LATTICE_H
 #define LATTICE_H
 #include "kernels.h"
+
+/* sum_j |grad W_ij|^2 around a particle of the lattice, where sum_j grad W_ij = 0 [1/m^(2d+2)] */
+static inline double lattice_spread(const struct kernel *kernel, double dx)
+{
+  const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
+  double spread = 0;
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -reach; b <= reach; b++)
+      for (int c = -deep; c <= deep; c++) {
+        const double r = dx * sqrt((double)(a * a + b * b + c * c));
+        const double slope = r > 0 ? (double)kernel_dW(kernel, (real)r, DIM) : 0;
+        spread += slope * slope;
+      }
+  return spread;
+}
 
 /* One mode exp(i k.x), k = angle/dx [DIM], of the pressure operator of DFSPH and PBF,
  *   A p_i = sum_j (a_i - a_j).grad W_ij,   a_i = sum_j (p_i + p_j) grad W_ij:
@@ -38,6 +54,49 @@ static inline double lattice_stiffest(const struct kernel *kernel, double dx)
       double angle[3] = {0, 0, 0};
       for (int d = 0; d < axes; d++) angle[d] = (double)PI * k / steps;
       const double mode = lattice_mode(kernel, dx, angle);
+      if (mode > largest) largest = mode;
+    }
+  return largest;
+}
+
+/* One mode exp(i k.x), k = angle/dx [DIM] along an axis or a diagonal, of
+ *   L v_i = 2 sum_j |W'_ij|/r_ij (v_i - v_j)               if full
+ *         = 2 (d+2) sum_j |W'_ij|/r_ij e e.(v_i - v_j)     if not:
+ * its largest eigenvalue [1/m^(d+2)], that of motion along k. */
+static inline double lattice_friction(const struct kernel *kernel, double dx,
+                                      const double angle[DIM], int full)
+{
+  const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
+  double all = 0, along = 0, k2 = 0;
+  for (int d = 0; d < DIM; d++) k2 += angle[d] * angle[d];
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -reach; b <= reach; b++)
+      for (int c = -deep; c <= deep; c++) {
+        const double at[3] = {(double)a, (double)b, (double)c};
+        const double r2 = at[0] * at[0] + at[1] * at[1] + at[2] * at[2], r = sqrt(r2);
+        if (r2 > 0) {
+          double phase = 0;
+          for (int d = 0; d < DIM; d++) phase += angle[d] * at[d];
+          const double slope = (double)kernel_dW(kernel, (real)(dx * r), DIM);
+          const double pull = -2 * slope / (dx * r) * (1 - cos(phase));
+          all += pull;
+          along += pull * phase * phase / (k2 * r2);
+        }
+      }
+  return full ? all : (DIM + 2) * along;
+}
+
+/* The largest of these: forces nu V L v of old velocities, V the volume of a particle, are stable
+ * up to dt = 2/(nu V) over it. */
+static inline double lattice_most_friction(const struct kernel *kernel, double dx, int full)
+{
+  const int steps = 32;
+  double largest = 0;
+  for (int axes = 1; axes <= DIM; axes++)
+    for (int k = 1; k <= steps; k++) {
+      double angle[3] = {0, 0, 0};
+      for (int d = 0; d < axes; d++) angle[d] = (double)PI * k / steps;
+      const double mode = lattice_friction(kernel, dx, angle, full);
       if (mode > largest) largest = mode;
     }
   return largest;

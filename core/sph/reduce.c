@@ -5,15 +5,19 @@
 
 int sweep_reversed;
 
-double *reduce_scratch(int chunks)
+/* Where no memory is left, the room that there was does: the sums go on in parts. */
+double *reduce_scratch(int chunks, int *room)
 {
-  static double *scratch;
-  static int capacity;
+  enum { FIRST = 64 };
+  static double first[FIRST], *grown;
+  static int capacity = FIRST;
   if (chunks > capacity) {
-    double *grown = realloc(scratch, sizeof(double) * (size_t)chunks);
-    if (!grown) return scratch; /* 8 kB per million particles: the run itself failed long before */
-    scratch = grown;
-    capacity = chunks;
+    double *more = realloc(grown, sizeof(double) * (size_t)chunks);
+    if (more) {
+      grown = more;
+      capacity = chunks;
+    }
   }
-  return scratch;
+  *room = capacity;
+  return grown ? grown : first;
 }

@@ -18,7 +18,8 @@
 extern "C" {
 #endif
 extern int sweep_reversed; /* walk backwards: results must not notice (tests) */
-double *reduce_scratch(int chunks);
+/* Room for numbers of `chunks` chunks, or for *room, at least 1, where there is no memory. */
+double *reduce_scratch(int chunks, int *room);
 #ifdef __cplusplus
 }
 #endif
@@ -39,27 +40,32 @@ double *reduce_scratch(int chunks);
     stage_end(&clock_, begun_, n_);                                                             \
   } while (0)
 
-#define reduce_over_(stage, s, count, result, start, combine)                                   \
-  do {                                                                                          \
-    static struct stage_clock clock_ = {#stage, 0, 0, 0, 0, 0};                                 \
-    const double begun_ = stage_begin(&clock_);                                                 \
-    const int n_ = (count), chunks_ = (n_ + REDUCE_CHUNK - 1) / REDUCE_CHUNK;                   \
-    double *part_ = reduce_scratch(chunks_);                                                    \
-    _Pragma("omp parallel for schedule(static) if (n_ > SWEEP_GRAIN)") for (int c_ = 0;         \
-                                                                            c_ < chunks_; c_++) \
-    {                                                                                           \
-      const int to_ = (c_ + 1) * REDUCE_CHUNK < n_ ? (c_ + 1) * REDUCE_CHUNK : n_;              \
-      double a_ = start;                                                                        \
-      for (int k_ = c_ * REDUCE_CHUNK; k_ < to_; k_++) {                                        \
-        const double b_ = (double)stage(s, k_);                                                 \
-        a_ = combine(a_, b_);                                                                   \
-      }                                                                                         \
-      part_[c_] = a_;                                                                           \
-    }                                                                                           \
-    double all_ = start;                                                                        \
-    for (int c_ = 0; c_ < chunks_; c_++) all_ = combine(all_, part_[c_]);                       \
-    *(result) = all_;                                                                           \
-    stage_end(&clock_, begun_, n_);                                                             \
+#define reduce_over_(stage, s, count, result, start, combine)                                  \
+  do {                                                                                         \
+    static struct stage_clock clock_ = {#stage, 0, 0, 0, 0, 0};                                \
+    const double begun_ = stage_begin(&clock_);                                                \
+    const int n_ = (count), chunks_ = (n_ + REDUCE_CHUNK - 1) / REDUCE_CHUNK;                  \
+    double all_ = start;                                                                       \
+    int room_;                                                                                 \
+    double *part_ = reduce_scratch(chunks_, &room_);                                           \
+    for (int first_ = 0; first_ < chunks_; first_ += room_) {                                  \
+      const int num_ = chunks_ - first_ < room_ ? chunks_ - first_ : room_;                    \
+      _Pragma("omp parallel for schedule(static) if (n_ > SWEEP_GRAIN)") for (int c_ = 0;      \
+                                                                              c_ < num_; c_++) \
+      {                                                                                        \
+        const int from_ = (first_ + c_) * REDUCE_CHUNK;                                        \
+        const int to_ = from_ + REDUCE_CHUNK < n_ ? from_ + REDUCE_CHUNK : n_;                 \
+        double a_ = start;                                                                     \
+        for (int k_ = from_; k_ < to_; k_++) {                                                 \
+          const double b_ = (double)stage(s, k_);                                              \
+          a_ = combine(a_, b_);                                                                \
+        }                                                                                      \
+        part_[c_] = a_;                                                                        \
+      }                                                                                        \
+      for (int c_ = 0; c_ < num_; c_++) all_ = combine(all_, part_[c_]);                       \
+    }                                                                                          \
+    *(result) = all_;                                                                          \
+    stage_end(&clock_, begun_, n_);                                                            \
   } while (0)
 #define REDUCE_SUM_(a, b) ((a) + (b))
 #define REDUCE_MAX_(a, b) ((a) > (b) ? (a) : (b))

@@ -107,6 +107,12 @@ class Values(Refusal):
                           ("--frames", ("0", "-1", "1.5", "text", "99999999"))):
             for value in bad:
                 self.refused(*PATCH, flag, value, says=[f"{flag}: ", value])
+        for name, value in (("max_iterations", "2.5"), ("fixed_iterations", "0.1"),
+                            ("scorr_n", "3.9"), ("samples", "10.5"), ("samples", "1.0000001")):
+            self.refused(*PATCH, "--set", f"{name}={value}",
+                         says=[f"--set {name}: {name} is {value}", "whole numbers from"])
+        for value in ("20", "20.0", "2e1"):
+            self.call(*PATCH, "--quiet", "--set", f"max_iterations={value}")
 
     def test_words(self):
         self.refused(*PATCH, "--set", "kernel=gauss", says=["'gauss'", "cubic|spiky"])
@@ -205,6 +211,7 @@ class Outputs(Refusal):
             self.refused(*PATCH, flag, "folder/", says=["'folder/'", "folder"])
             self.refused(*PATCH, flag, "new/", says="folder")
             self.refused(*PATCH, flag, "/proc/a", says="'/proc/a'")
+            self.refused(*PATCH, "--dry-run", flag, "none/a", says=["'none/a'", "no folder"])
         self.refused(*PATCH, "-o", "a", "--json", "none/b", says="'none/b'")
         self.refused(*PATCH, "-o", "none/a", "--json", "b", says="'none/a'")
         self.refused(*PATCH, "-o", "/dev/null", says="not a regular file")

@@ -56,18 +56,18 @@ class KnownAnswers(cli_case.Case):
         self.assertEqual(found["particles_lost"], 0)
 
     def test_dam_break_at_start(self):
-        """Pressure at t = 0+ after one small step, against the series, on nodes.
+        """Pressure at t = 0+ after one small step, against the series.
 
-        Where pressures sit on the particles (S.A, S.B) the wall's share of the divergence is a
-        fifth too small at any spacing: errors 0.156, 0.176, 0.254 at dx .02, .01, .005. Only a
-        coarse bound is held there."""
+        Virtual particles inside a wall count as full. Where their volume faded out behind the
+        wall's last layer, the wall was a weak free surface: S.A and S.B had errors of 0.156,
+        0.176, 0.254 at dx .02, .01, .005."""
         words = "--dt", 1e-6, "--t-end", 1e-6, "--set", "tolerance=1e-7", "--spacing"
-        errors = [self.metrics("dam-break", "dual-sc", *words, dx)["pressure_error"]
-                  for dx in (0.02, 0.01, 0.005)]
-        self.assertLess(errors[1], 0.06)
-        self.check_orders(errors, 0.5, 1.2)
-        for solver in ("dual-sa", "dual-sb"):
-            self.assertLess(self.metrics("dam-break", solver, *words, 0.01)["pressure_error"], 0.2)
+        for solver, orders in (("dual-sc", (0.5, 1.2)), ("dual-sa", (0.6, 1.2))):
+            errors = [self.metrics("dam-break", solver, *words, dx)["pressure_error"]
+                      for dx in (0.02, 0.01, 0.005)]
+            self.assertLess(errors[1], 0.07)
+            self.check_orders(errors, *orders)
+        self.assertLess(self.metrics("dam-break", "dual-sb", *words, 0.01)["pressure_error"], 0.07)
 
     def test_free_fall(self):
         for solver in ("dual-sa", "dual-sb", "dual-sc", "pbf", "dfsph"):

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 import cli_case
 from cli_case import ROOT, read_json
@@ -152,7 +153,9 @@ class Plugins(cli_case.Case):
         self.assertEqual(set(first), {NAME, "dfsph"})
         self.assertNotIn("plugin", first[NAME]["what"])
         self.call("bless", "results", "b.json", "--reason", "the first")
-        self.call("compare", "results", "b.json")
+        self.call("compare", "results", "b.json", "--bitwise", "--junit", "b.xml")
+        cases = xml.etree.ElementTree.parse(self.dir / "b.xml").getroot()
+        self.assertEqual({case.get("classname").split()[2] for case in cases}, {NAME, "dfsph"})
         self.call(*words)
         self.assertEqual(len(self.journal()), 2)
         changed = self.compile(self.source.replace("P(courant, 0.25", "P(courant, 0.2"), NAME)
@@ -192,6 +195,27 @@ class Plugins(cli_case.Case):
         self.assertTrue(failed)
         self.assertTrue(all(NAME in row["run"] for row in failed), failed)
 
+    def facts(self, results):
+        """Of each solver's run, but for times and places."""
+        found = {}
+        for path in (self.dir / results / "runs").glob("*.json"):
+            facts = read_json(path.read_text())
+            for key in ("timing", "memory", "provenance"):
+                del facts[key]
+            found[facts["solver"]] = (facts, path)
+        return found
+
+    def undisturbed(self, *solvers):
+        """Are their results, bit for bit, those of a sweep of them alone?"""
+        (self.dir / "alone.yaml").write_text(PLAN.format(solvers=", ".join(solvers)))
+        self.call("sweep", "alone.yaml", "--results", "alone", "--quiet", "--plugin", self.plugin)
+        beside, alone = self.facts("results"), self.facts("alone")
+        self.assertEqual(set(alone), set(solvers))
+        for name in solvers:
+            self.assertEqual(beside[name][0], alone[name][0])
+            frames = [path.with_suffix(".vtkhdf") for path in (beside[name][1], alone[name][1])]
+            done(sys.executable, ROOT / "tools" / "h5same", *frames)
+
     def test_misbehaving(self):
         faults = {"crashes": "abort();",
                   "hangs": "for (;;) usleep(1000);",
@@ -204,15 +228,16 @@ class Plugins(cli_case.Case):
         shutil.copy(self.plugin / f"{NAME}-2d-f64.so", self.dir)
         plan = self.plan(["crashes", "hangs", NAME, "eats", "dfsph", "asks-politely", "pbf"])
         words = ("sweep", plan, "--results", "results", "--quiet", "--plugin", self.dir,
-                 "--jobs", "2", "--timeout", "2", "--memory", "300")
+                 "--jobs", "3", "--timeout", "6", "--memory", "300")
         err = self.call(*words, code=3)[1]
         self.assertIn("1 of 7 runs crashed", err)
         lines = {line["solver"]: line for line in self.journal()}
         self.assertEqual({name: line["status"] for name, line in lines.items()},
                          {"crashes": "crashed", "hangs": "timeout", "eats": "oom",
                           "asks-politely": "oom", NAME: "ok", "dfsph": "ok", "pbf": "ok"})
+        self.undisturbed(NAME, "dfsph", "pbf")
         self.assertIn("300 MiB", lines["eats"]["reason"])
-        self.assertIn("2 s", lines["hangs"]["reason"])
+        self.assertIn("6 s", lines["hangs"]["reason"])
         self.assertRegex(lines["crashes"]["reason"], "signal 6")
         self.call(*words, code=3)
         self.assertEqual(len(self.journal()), 7, "none of them is to be run again")

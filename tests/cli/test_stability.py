@@ -73,7 +73,7 @@ class Limits(cli_case.Case):
         files = self.files()
         for name in ("stability-limits", "stability-map"):
             for kind in ("svg", "png"):
-                self.assertIn(f"r/stability/tank/{name}.{kind}", files)
+                self.assertIn(f"r/stability/tank-fixed_iterations/{name}.{kind}", files)
         done = self.journal()
         _, _, again = self.stability(*words)
         self.assertEqual(self.journal(), done)  # nothing is run twice

@@ -167,7 +167,7 @@ class Baselines(Case):
         def change(facts):
             curve = facts["series"]["total_energy"]
             curve[len(curve) // 2] += 1e-3 * max(map(abs, curve)) + 1e-6
-        self.fails_by("total_energy", change)
+        self.fails_by("total_energy.curve", change)
 
     def test_another_end_fails(self):
         def change(facts):
@@ -211,7 +211,7 @@ class Baselines(Case):
         with open(self.baseline) as file:
             text = file.read()
         for bad, part in ((text[:-20], "b.json:"), (text.replace('"rules"', '"rulez"'), "'rules'"),
-                          (text.replace('"both"', '"left"'), "allowed is both")):
+                          (text.replace('"why"', '"side": "left", "why"', 1), "allowed is both")):
             with open(self.baseline, "w") as file:
                 file.write(bad)
             _, said = self.call("compare", self.results, self.baseline, code=2)

@@ -274,7 +274,7 @@ def units(tree):
             row = arguments(source.no_comments, offset)
             unit, meaning = ([""] * 2 + row)[-2:]
             line, name = source.line(offset), " ".join(row[:2 if macro in ("FIELD", "F") else 1])
-            if not re.fullmatch(r'"[^"]*[^"\s][^"]*"|[A-Z_]+_CHOICES', unit) or len(row) < 3:
+            if not re.fullmatch(r'"[^"]*[^"\s][^"]*"|[A-Z_]+_CHOICES|WHOLE', unit) or len(row) < 3:
                 yield source, line, f"{macro}({name}) has no unit"
             if not re.fullmatch(r'"[^"]*[A-Za-z]{2}[^"]*"(\s*"[^"]*")*', meaning):
                 yield source, line, f"{macro}({name}) has no meaning"

@@ -11,13 +11,13 @@
  *   tension (p W'' < 0), doi:10.1006/jcph.1995.1010.
  *
  * Nothing of the code under test is used for the theory, not even the kernel. */
-#include "laws.h"
+#include "choices.h"
 
 #if DIM == 2 && !defined(REAL_IS_FLOAT) && defined(SPHBENCH_HAVE_REFERENCE)
 #include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_eigen.h>
 
-enum { ACROSS = 6, N = ACROSS * ACROSS, HALF = 2 * N, ALL_DOF = 2 * HALF, MOST_PARAMS = 64 };
+enum { ACROSS = 6, N = ACROSS * ACROSS, HALF = 2 * N, ALL_DOF = 2 * HALF };
 
 /* A solver with its parameters on a lattice whose spacing is `stretch` DX. */
 struct lattice {
@@ -26,32 +26,9 @@ struct lattice {
   double stretch, dt;
 };
 
-static int param_number(const struct solver *solver, const char *name)
-{
-  for (int k = 0; k < solver->num_params; k++)
-    if (strcmp(solver->params[k].name, name) == 0) return k;
-  return -1;
-}
-
 static int set(struct lattice *l, const char *name, double value)
 {
-  const int k = param_number(l->solver, name);
-  if (k >= 0) l->value[k] = value;
-  return k >= 0;
-}
-
-/* The number of a word among "a|b|c"; -1: it is none. */
-static int choice(const struct solver *solver, const char *name, const char *word)
-{
-  const int k = param_number(solver, name);
-  int number = 0;
-  if (k < 0) return -1;
-  for (const char *at = solver->params[k].unit; *at; number++) {
-    const size_t length = strcspn(at, "|");
-    if (strlen(word) == length && strncmp(at, word, length) == 0) return number;
-    at += length + (at[length] == '|');
-  }
-  return -1;
+  return set_param(l->solver, l->value, name, value);
 }
 
 static struct lattice make(const struct solver *solver, double stretch, double dt)

@@ -235,8 +235,8 @@ static void test_virtual_spacing(void **unused)
   (void)unused;
   if (DIM == 3 || !IS_DOUBLE) skip();
   static struct cloud scaled, plain;
-  const struct choices share = {2, 1, 0, DENSITY_VIRTUAL, 0, 4, 0};
-  const struct choices whole = {2, 1, 0, DENSITY_VIRTUAL, 0, 1, 0};
+  const struct choices share = {2, 1, 0, DENSITY_VIRTUAL, 0, 4, 0, 0};
+  const struct choices whole = {2, 1, 0, DENSITY_VIRTUAL, 0, 1, 0, 0};
   spacing_of_nodes = 0.5;
   cloud_make(&scaled, DIM == 2 ? 9 : 4, 0, KERNEL_CUBIC, 5);
   plain = scaled;
@@ -290,7 +290,7 @@ static void test_weighted_cg(void **unused)
   (void)unused;
   if (DIM == 3 || !IS_DOUBLE) skip();
   static struct cloud c;
-  const struct choices o = {0, 0, 0, DENSITY_VIRTUAL, 0, 1, 0};
+  const struct choices o = {0, 0, 0, DENSITY_VIRTUAL, 0, 1, 0, 0};
   spacing_of_nodes = 0;
   cloud_make(&c, DIM == 2 ? 24 : 4, 0, KERNEL_CUBIC, 5);
   twin_density(&c);

@@ -132,7 +132,8 @@ static void one_step(void **unused)
     for (int form = 0; form < 4; form++)
       for (int walls = 0; walls < 2; walls++) {
         const struct choices o = {
-          strategy, form & 1, form >> 1, density_of(strategy, form & 1), 4, 1, (double)(real)0.1};
+          strategy, form & 1, form >> 1,         density_of(strategy, form & 1),
+          4,        1,        (double)(real)0.1, strategy != SC};
         print_message("%s, form %d, %s\n", strategies[strategy]->name, form,
                       walls ? "walls" : "free");
         compare(&o, walls, 11 + (unsigned long long)form);
@@ -146,7 +147,7 @@ static void converged_step(void **unused)
 {
   (void)unused;
   for (int strategy = SA; strategy <= SC; strategy++) {
-    const struct choices o = {strategy, 1, 0, density_of(strategy, 1), 0, 1, 0.1};
+    const struct choices o = {strategy, 1, 0, density_of(strategy, 1), 0, 1, 0.1, strategy != SC};
     compare(&o, 1, 5);
   }
 }

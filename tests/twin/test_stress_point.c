@@ -74,7 +74,8 @@ static void one_step(void **unused)
                                   form & 1 ? DENSITY_REAL : DENSITY_VIRTUAL,
                                   4,
                                   each[arrangement],
-                                  (double)(real)0.1};
+                                  (double)(real)0.1,
+                                  0};
         print_message("arrangement %d, form %d, %s\n", arrangement, form, walls ? "walls" : "free");
         compare(&o, walls, 11 + (unsigned long long)form);
       }
@@ -87,7 +88,7 @@ static void converged_step(void **unused)
 {
   (void)unused;
   for (int arrangement = PAIR; arrangement <= EDGES; arrangement++) {
-    const struct choices o = {arrangement, 1, 0, DENSITY_REAL, 0, each[arrangement], 0.1};
+    const struct choices o = {arrangement, 1, 0, DENSITY_REAL, 0, each[arrangement], 0.1, 0};
     compare(&o, 1, 5);
   }
 }

@@ -11,6 +11,7 @@ struct choices {
   int strategy, saturated, adjoint, density, iterations; /* iterations of CG; 0: by elimination */
   int each;                                              /* virtual particles per particle */
   double kappa;
+  int on_particles; /* virtual particles are copies: those of walls count as full */
 };
 
 /* Virtual particles and the linear system on them. */
@@ -76,7 +77,9 @@ static void source(const struct cloud *c, const struct choices *o, int I)
       dense += volume(c, j) * (c->rho[j] / c->rho0 - 1) * W_at(c, between(s.X[I], c->x[j])) / cf;
     dense = fmax(dense, 0);
   }
-  s.V[I] = (o->saturated ? c->mass / c->rho0 * fmin(1, cI / 0.85) : V2) / o->each;
+  const double V0 = c->mass / c->rho0;
+  const int in_wall = o->on_particles && I >= c->n && !s.fluid[I];
+  s.V[I] = (in_wall ? V0 : o->saturated ? V0 * fmin(1, cI / 0.85) : V2) / o->each;
   s.D[I] = s.fluid[I] ? -div / c->dt + o->kappa * dense / (c->dt * c->dt) : 0;
   for (int d = 0; d < DIM; d++) s.lift[I][d] = s.fluid[I] ? grad[d] / cf : 0;
 }

@@ -188,6 +188,21 @@ static void test_check_finds_overlaps(void **state)
   scene_free(&s);
 }
 
+/* What is 1e30 m away rounds as coarsely as it likes; the others are still apart. */
+static void test_check_of_one_far_away(void **state)
+{
+  struct scene s = block();
+  vec far = zero();
+  (void)state;
+  far.c[1] = (real)1e30;
+  must(scene_add(&s, far, zero()));
+  scene_domain_around(&s, 0.5);
+  must(scene_check(&s));
+  must(scene_add(&s, far, zero()));
+  refused(scene_check(&s), "shapes overlap");
+  scene_free(&s);
+}
+
 static void test_check_of_many_is_fast(void **state)
 {
   struct scene s = new_scene(0.001);
@@ -273,6 +288,7 @@ int main(void)
     cmocka_unit_test(test_domain),
     cmocka_unit_test(test_check_finds_no_particle_and_nan),
     cmocka_unit_test(test_check_finds_overlaps),
+    cmocka_unit_test(test_check_of_one_far_away),
     cmocka_unit_test(test_check_of_many_is_fast),
     cmocka_unit_test(test_places_find_the_nearest),
   };

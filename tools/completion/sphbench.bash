@@ -13,13 +13,15 @@ _sphbench() {
     --dim) offer '2 3' && return ;;
     --precision) offer 'float double' && return ;;
     --backend) offer 'openmp cuda' && return ;;
-    -o | --json | --junit | --results | --plugin | --restart) return ;; # files
+    --emit) offer 'slurm parallel' && return ;;
+    -o | --manifest | --json | --junit | --results | --plugin | --restart) return ;; # files
   esac
   if [[ $word == -* ]]; then
     case $verb in
       run | speed) offer "$("$command" "$verb" --help 2>/dev/null | awk '/^  -/ {print $1}')" ;;
-      sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin' ;;
-      compare) offer '--junit --json' ;;
+      sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin --emit
+        --batch --manifest --task --timed --threads' ;;
+      compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
       *) offer '--json --plugin --backend --dim --precision' ;;
