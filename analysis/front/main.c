@@ -18,7 +18,7 @@ static const char usage[] =
   "  run SCENE --solver NAME   one run; 'sphbench run --help' lists the flags\n"
   "  figure NAME...            run what is missing for a figure, then draw it (SVG and PNG)\n"
   "         --standard | --all    the standard ones; every one\n"
-  "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
+  "         [--size desk|paper] [--dry-run] [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--memory MIB] [--fresh] [--dry-run]\n"
   "         [--quiet] [--timed N [--threads N]]   then take the time of each, N times\n"
