@@ -9,6 +9,9 @@ install(TARGETS sphbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 foreach(variant ${variants} ${cuda_variants}) # those that are not built are not missed
   install(TARGETS sphbench-${variant} RUNTIME DESTINATION libexec/sphbench OPTIONAL)
 endforeach()
+foreach(program ${programs})
+  install(TARGETS ${program} RUNTIME DESTINATION libexec/sphbench)
+endforeach()
 install(PROGRAMS tools/new-solver DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME sphbench-new-solver)
 install(DIRECTORY tools/plugin-template DESTINATION ${share})
 install(DIRECTORY core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sphbench

@@ -1,9 +1,10 @@
 # Rows of runs by columns of times; particles coloured by one quantity, equal axes, the same colour
-# scale everywhere. A script sets cell_width and cell_height [px] of a picture, the spacing [m] of
-# the particles and for each time the step [m] of the axes' marks, and then loads this file.
+# scale everywhere. A script sets cell_width and cell_height [px] of a picture and for each time the
+# step [m] of the axes' marks, and then loads this file.
 
 load 'contents.gp'
-left = 190.0; right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
+if (!exists('left')) { left = 190.0 } # room for the rows' labels [px]
+right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
 width = left + right + columns*cell_width + (columns - 1)*gap
 height = top + bottom + rows*cell_height + (rows - 1)*gap
 load shared.'style.gp'
@@ -12,6 +13,7 @@ load shared.'style.gp'
 px_of_mark = 7.0
 nothing = '/dev/null'
 y_label_offset = 0.3
+y_label = cell_height > 60 ? 'y [m]' : ''
 
 unset key
 unset grid
@@ -38,16 +40,19 @@ do for [r = 1:rows] {
     set ytics step[c] scale 0.5 offset 0.5,0
     if (r == rows) { set format x '%g'; set xlabel 'x [m]' offset 0,0.7 } \
       else { set format x ''; unset xlabel }
-    if (c == 1) { set format y '%g'; set ylabel 'y [m]' offset y_label_offset,0 } \
+    if (c == 1) { set format y '%g'; set ylabel y_label offset y_label_offset,0 } \
       else { set format y ''; unset ylabel }
     unset label
     if (r == 1) {
-      set label 1 sprintf('t = %.2f s', time[c]) at graph 0.5, screen 1 - 0.5*top/height center
+      set label 1 sprintf('t = %g s', time[c]) at graph 0.5, screen 1 - 0.5*top/height center
     }
     if (cell == 1) { set label 4 label_colour at screen 1 - 12/width, screen 0.5 center rotate }
     if (c == 1) { set label 2 row[r] at screen 8/width, graph 0.5 left noenhanced }
     if (note[cell] ne '') {
       set label 3 note[cell] at graph 0.5, graph 0.5 center font ',11' textcolor rgb '#666666'
+    }
+    if (cell == rows*columns) {
+      set label 99 size_note at screen 0.995, screen 0.02 right font ',9' textcolor rgb '#666666'
     }
     outline = 0
     do for [k = 1:num_overlays] { if (abs(overlay_time[k] - time[c]) < 1e-6) { outline = k } }

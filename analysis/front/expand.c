@@ -88,8 +88,10 @@ static status add_case(struct figure *f, const struct recipe_runs *runs, struct 
 static status add_group(struct figure *f, const struct recipe_runs *runs, const char *solver,
                         const struct names *solvers, struct queue *queue)
 {
-  struct figure_case one = {
-    .solver = solver, .colour = number_of(solvers, solver), .group = f->num_groups++};
+  struct figure_case one = {.solver = solver,
+                            .name = runs->label,
+                            .colour = number_of(solvers, solver),
+                            .group = f->num_groups++};
   if (!one.colour) {
     const char *near = nearest_name(solver, (const char *const *)solvers->name, solvers->n);
     return yaml_source_refuse(f->recipe->source, "runs", "'%s' is no solver; %s%s%s", solver,
@@ -115,12 +117,15 @@ static status expand(struct figure *f, const struct names *solvers, struct queue
   return OK;
 }
 
-status figure_prepare(struct figure *figure, const char *name, const struct names *solvers,
+status figure_prepare(struct figure *figure, const struct figure_request *request,
                       struct queue *queue)
 {
-  *figure = (struct figure){.folder = recipe_folder(name)};
-  TRY(recipe_read(name, &figure->recipe));
-  return expand(figure, solvers, queue);
+  *figure = (struct figure){.folder = recipe_folder(request->name),
+                            .solvers = request->solvers,
+                            .paper_size = request->paper_size};
+  TRY(recipe_read(request->name, &figure->recipe));
+  if (request->paper_size) TRY(recipe_at_paper_size(figure->recipe));
+  return expand(figure, request->solvers, queue);
 }
 
 void figure_free(struct figure *figure)
@@ -132,5 +137,6 @@ void figure_free(struct figure *figure)
   free(figure->cases);
   recipe_free(figure->recipe);
   json_decref(figure->files);
+  json_decref(figure->values);
   *figure = (struct figure){.n = 0};
 }

@@ -71,6 +71,65 @@ json_t *run_facts_json(const struct queue *queue, int run)
   return json_load_file(path.text, 0, NULL);
 }
 
+void put_lists(FILE *contents, int n)
+{
+  const int room = n > 0 ? n : 1;
+  fprintf(contents, "array file[%d]\narray title[%d]\narray colour[%d]\narray fit[%d]\n", room,
+          room, room, room);
+}
+
+void put_curve(FILE *contents, int number, const char *file, const char *title, int colour)
+{
+  put_text(contents, "file", number, file);
+  put_text(contents, "title", number, title);
+  put_text(contents, "fit", number, "");
+  fprintf(contents, "colour[%d] = %d\n", number, colour);
+}
+
+/* colour_dual_sc = 9: the line type of each solver. */
+static void put_colours(const struct figure *f, FILE *contents)
+{
+  for (int k = 0; k < f->solvers->n; k++) {
+    fputs("colour_", contents);
+    for (const char *c = f->solvers->name[k]; *c; c++)
+      fputc(isalnum((unsigned char)*c) ? *c : '_', contents);
+    fprintf(contents, " = %d\n", k + 1);
+  }
+}
+
+/* --- how large it is --- */
+
+static struct path size_words(const struct figure *f, double low, double high)
+{
+  const char *word = !f->recipe->paper                                ? ""
+                     : recipe_is_paper_size(f->recipe, f->paper_size) ? "paper size: "
+                                                                      : "desk size: ";
+  if (!(high > 0)) return path_of("%s", "");
+  return low < high ? path_of("%s%.0f to %.0f particles", word, low, high)
+                    : path_of("%s%.0f particles", word, high);
+}
+
+/* Every picture says it, in its corner. */
+static void put_size(struct figure *f, const struct queue *queue, FILE *contents)
+{
+  double low = HUGE_VAL, high = 0, spacing = 0;
+  for (int k = 0; k < f->n; k++) {
+    json_t *facts = run_facts_json(queue, f->cases[k].run);
+    if (!facts) continue;
+    const double n = fact_value(facts, "particles");
+    low = fmin(low, n);
+    high = fmax(high, n);
+    spacing = fmax(spacing, fact_value(facts, "parameters.spacing"));
+    json_decref(facts);
+  }
+  f->size = size_words(f, low, high);
+  put_text(contents, "size_note", 0, f->size.text);
+  fputs("set label 99 size_note at screen 0.995, screen 0.02 right noenhanced font ',9' "
+        "textcolor rgb '#666666'\n",
+        contents);
+  if (spacing > 0) fprintf(contents, "spacing = %.9g\n", spacing);
+}
+
 /* --- overlays --- */
 
 static int copy_row(const struct recipe_overlay *o, const char *line, FILE *out)
@@ -139,11 +198,14 @@ static status write_contents(struct figure *f, const struct queue *queue, FILE *
                                    FILE *) = {[EXTRACT_FRAMES] = extract_frames,
                                               [EXTRACT_SERIES] = extract_series,
                                               [EXTRACT_METRIC] = extract_metric,
-                                              [EXTRACT_TABLE] = extract_table};
+                                              [EXTRACT_TABLE] = extract_table,
+                                              [EXTRACT_PROGRAM] = extract_program};
   fprintf(contents, "# What there is to draw; written from recipe.yaml and the results.\n");
   put_text(contents, "label_x", 0, f->recipe->labels.x);
   put_text(contents, "label_y", 0, f->recipe->labels.y);
   put_text(contents, "label_colour", 0, f->recipe->labels.colour);
+  put_colours(f, contents);
+  put_size(f, queue, contents);
   TRY(extract[f->recipe->extract.kind](f, queue, contents));
   return write_overlays(f, contents);
 }

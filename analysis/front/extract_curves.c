@@ -1,4 +1,4 @@
-/* Curves: metrics over time, or final metrics against a parameter; and tables of final metrics. */
+/* Curves: metrics over time, or final metrics against a parameter. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,24 +8,6 @@
 static double number_in(const json_t *value)
 {
   return json_is_number(value) ? json_number_value(value) : (double)NAN;
-}
-
-/* The final value of a metric; also the run's own "iterations" (mean per step) and "per_step" [s].
- */
-static double final_value(const json_t *facts, const char *name)
-{
-  const json_t *metric = json_object_get(json_object_get(facts, "metrics"), name);
-  if (metric) return number_in(json_object_get(metric, "value"));
-  if (strcmp(name, "iterations") == 0)
-    return number_in(json_object_get(json_object_get(facts, "iterations"), "mean"));
-  return number_in(json_object_get(json_object_get(facts, "timing"), name));
-}
-
-static const char *unit_of(const json_t *facts, const char *name)
-{
-  const json_t *metric = json_object_get(json_object_get(facts, "metrics"), name);
-  const char *unit = json_string_value(json_object_get(metric, "unit"));
-  return unit ? unit : json_object_get(json_object_get(facts, "timing"), name) ? "s" : "1";
 }
 
 /* "first [unit]|name [unit]|..." of the figure's columns; to be released by free(). */
@@ -38,25 +20,10 @@ static char *column_names(const struct figure *f, const json_t *facts, const cha
   fputs(first, out);
   for (unsigned c = 0; c < f->recipe->extract.num_columns; c++) {
     const char *name = f->recipe->extract.columns[c];
-    fprintf(out, "|%s [%s]", name, unit_of(facts, name));
+    fprintf(out, "|%s [%s]", name, fact_unit(facts, name));
   }
   fclose(out);
   return text;
-}
-
-static void declare(FILE *contents, int n)
-{
-  const int room = n > 0 ? n : 1;
-  fprintf(contents, "array file[%d]\narray title[%d]\narray colour[%d]\narray fit[%d]\n", room,
-          room, room, room);
-}
-
-static void put_curve(FILE *contents, int number, const char *file, const char *title, int colour)
-{
-  put_text(contents, "file", number, file);
-  put_text(contents, "title", number, title);
-  put_text(contents, "fit", number, "");
-  fprintf(contents, "colour[%d] = %d\n", number, colour);
 }
 
 /* --- series --- */
@@ -103,7 +70,7 @@ static status write_series(struct figure *f, const json_t *facts, const struct f
 status extract_series(struct figure *f, const struct queue *queue, FILE *contents)
 {
   int n = 0;
-  declare(contents, f->n);
+  put_lists(contents, f->n);
   for (int k = 0; k < f->n; k++) {
     const struct figure_case *one = &f->cases[k];
     json_t *facts = run_facts_json(queue, one->run);
@@ -185,14 +152,14 @@ static status write_points(struct figure *f, const struct queue *queue, int firs
   if (begun != OK) return begun;
   for (int k = first; k < last && points->n < MOST_POINTS; k++) {
     if (!(facts = run_facts_json(queue, f->cases[k].run))) continue;
-    const double x = strtod(f->cases[k].value, NULL), y = final_value(facts, e->columns[0]);
+    const double x = strtod(f->cases[k].value, NULL), y = fact_value(facts, e->columns[0]);
     if (isfinite(y)) {
       points->x[points->n] = x;
       points->y[points->n++] = y;
     }
     fprintf(file.stream, "%.8g", x);
     for (unsigned c = 0; c < e->num_columns; c++)
-      fprintf(file.stream, " %.8g", final_value(facts, e->columns[c]));
+      fprintf(file.stream, " %.8g", fact_value(facts, e->columns[c]));
     fputc('\n', file.stream);
     json_decref(facts);
   }
@@ -203,7 +170,7 @@ status extract_metric(struct figure *f, const struct queue *queue, FILE *content
 {
   int n = 0;
   struct points points;
-  declare(contents, f->num_groups);
+  put_lists(contents, f->num_groups);
   for (int first = 0, last; first < f->n; first = last) {
     for (last = first; last < f->n && f->cases[last].group == f->cases[first].group;) last++;
     const struct figure_case *one = &f->cases[first];
@@ -217,40 +184,4 @@ status extract_metric(struct figure *f, const struct queue *queue, FILE *content
   }
   fprintf(contents, "n = %d\n", n);
   return n ? OK : user_error("%s: none of its runs has a result to draw", f->recipe->name);
-}
-
-/* --- tables --- */
-
-static void put_cell(FILE *out, double value)
-{
-  if (isfinite(value))
-    fprintf(out, "\t%.5g", value);
-  else
-    fputs("\t-", out);
-}
-
-/* Columns are separated by tabs, since labels have blanks. */
-status extract_table(struct figure *f, const struct queue *queue, FILE *contents)
-{
-  struct new_file file;
-  json_t *facts = NULL;
-  for (int k = 0; k < f->n && !facts; k++) facts = run_facts_json(queue, f->cases[k].run);
-  if (!facts) return user_error("%s: none of its runs has a result", f->recipe->name);
-  char *columns = column_names(f, facts, "run");
-  json_decref(facts);
-  const status begun = columns ? data_begin(f, &file, "table.dat", f->recipe->about, columns)
-                               : status_set(ERR_MEMORY, "out of memory");
-  free(columns);
-  if (begun != OK) return begun;
-  for (int k = 0; k < f->n; k++) {
-    facts = run_facts_json(queue, f->cases[k].run);
-    fputs(f->cases[k].label, file.stream);
-    for (unsigned c = 0; c < f->recipe->extract.num_columns; c++)
-      put_cell(file.stream, final_value(facts, f->recipe->extract.columns[c]));
-    fputc('\n', file.stream);
-    json_decref(facts);
-  }
-  fprintf(contents, "n = %d\n", f->n);
-  put_text(contents, "table", 0, "table.dat");
-  return file_commit(&file);
 }

@@ -1,4 +1,5 @@
-/* Frames: positions and one quantity of the particles, at given times, one row per run. */
+/* Frames: positions and one quantity of the particles, at given times, one row per run. In 3-D they
+ * are seen from the side: x and the height z. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,16 +28,24 @@ static double magnitude(const struct result_numbers *v, long i)
   return v->components == 1 ? v->values[i] : sqrt(sum);
 }
 
+/* Which component is the height? */
+static int upward(struct result_read *r)
+{
+  double dim;
+  return result_read_number(r, "run/dim", &dim) == OK && dim > 2 ? 2 : 1;
+}
+
 /* A scalar is taken as it is, a vector by its length. */
 static status write_rows(FILE *out, struct result_read *r, long frame, const char *quantity)
 {
   struct result_numbers x, q;
+  const int up = upward(r);
   TRY(result_read_array(r, frame, "position", &x));
   const status result = result_read_array(r, frame, quantity, &q);
   for (long i = 0; result == OK && i < x.rows && i < q.rows; i++) {
     const double *at = x.values + i * x.components, value = magnitude(&q, i);
-    if (isfinite(at[0]) && isfinite(at[1]) && isfinite(value))
-      fprintf(out, "%.5g %.5g %.4g\n", at[0], at[1], value);
+    if (isfinite(at[0]) && isfinite(at[up]) && isfinite(value))
+      fprintf(out, "%.5g %.5g %.4g\n", at[0], at[up], value);
   }
   free(x.values);
   if (result == OK) free(q.values);
@@ -54,13 +63,32 @@ static status write_frame(struct figure *f, struct result_read *r, long frame,
   struct new_file file;
   const struct path series = path_of("%s, t = %.4g s", one->label, result_read_time(r, frame));
   const struct path columns =
-    path_of("x [m]|y [m]|%s",
+    path_of("x [m]|%s [m]|%s", upward(r) == 2 ? "z" : "y",
             f->recipe->labels.colour ? f->recipe->labels.colour : f->recipe->extract.colour);
   TRY(data_begin(f, &file, name, series.text, columns.text));
   const status result = write_rows(file.stream, r, frame, array_of(f->recipe->extract.colour));
   if (result == OK) return file_commit(&file);
   file_discard(&file);
   return result;
+}
+
+/* In 3-D only walls half-way into the scene: those in front would hide it. */
+static int wall_is_seen(const struct result_numbers *x, long i, double middle, double near)
+{
+  return fabs(x->values[i * x->components + 1] - middle) <= near;
+}
+
+static void write_wall_rows(FILE *out, const struct result_numbers *x, int up)
+{
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (long i = 0; i < x->rows; i++) {
+    low = fmin(low, x->values[i * x->components + 1]);
+    high = fmax(high, x->values[i * x->components + 1]);
+  }
+  const double near = up == 2 ? 0.02 * (high - low) : HUGE_VAL;
+  for (long i = 0; i < x->rows; i++)
+    if (wall_is_seen(x, i, (low + high) / 2, near))
+      fprintf(out, "%.5g %.5g\n", x->values[i * x->components], x->values[i * x->components + up]);
 }
 
 /* Walls do not move: one file for all rows of a figure. */
@@ -72,8 +100,7 @@ static status write_walls(struct figure *f, struct result_read *r, FILE *content
   TRY(result_read_series(r, "walls/position", &x));
   if (x.components < 2) x.rows = 0; /* no positions */
   const status begun = data_begin(f, &file, "walls.dat", "wall particles", "x [m]|y [m]");
-  for (long i = 0; begun == OK && i < x.rows; i++)
-    fprintf(file.stream, "%.5g %.5g\n", x.values[i * x.components], x.values[i * x.components + 1]);
+  if (begun == OK) write_wall_rows(file.stream, &x, upward(r));
   free(x.values);
   put_text(contents, "walls", 0, "walls.dat");
   return begun == OK ? file_commit(&file) : begun;

@@ -10,8 +10,9 @@
 enum { MOST_FIGURES = 256 };
 
 struct request {
-  const char *results, *out, *jobs;
-  int all, standard, quiet;
+  const char *results, *out, *jobs, *size;
+  int all, standard, quiet, dry_run;
+  bool paper_size;
   const char *names[MOST_FIGURES];
   int num_names;
 };
@@ -30,11 +31,15 @@ static status parse(struct request *r, int argc, char **argv)
     {"--results", &r->results, NULL},   {"-o", &r->out, NULL},
     {"--jobs", &r->jobs, NULL},         {"--all", NULL, &r->all},
     {"--standard", NULL, &r->standard}, {"--quiet", NULL, &r->quiet},
+    {"--size", &r->size, NULL},         {"--dry-run", NULL, &r->dry_run},
   };
   const struct arguments what = {"figure", flags,        sizeof flags / sizeof *flags,
                                  r->names, MOST_FIGURES, &r->num_names};
-  *r = (struct request){.results = "results"};
+  *r = (struct request){.results = "results", .size = "desk"};
   TRY(arguments_parse(&what, argc, argv));
+  r->paper_size = strcmp(r->size, "paper") == 0;
+  if (!r->paper_size && strcmp(r->size, "desk") != 0)
+    return user_error("--size: '%s' found, allowed is desk or paper", r->size);
   if ((r->num_names > 0) + r->all + r->standard == 1) return OK;
   return user_error("figure: either NAMEs, --standard or --all is needed; 'sphbench list figures' "
                     "lists them");
@@ -53,24 +58,40 @@ static status prepare(const struct request *r, const char *const *names, int num
       recipe_free(recipe);
       if (!wanted) continue;
     }
-    TRY(figure_prepare(&figures[(*n)++], names[k], solvers, queue));
+    const struct figure_request request = {names[k], r->paper_size, solvers};
+    TRY(figure_prepare(&figures[(*n)++], &request, queue));
   }
   return *n ? OK : user_error("figure: there is nothing to draw");
 }
 
-/* What the report wants to know of a figure. */
+/* Which runs it shows, and what its recipe calls them: the claims look for them by that. */
+static json_t *runs_json(const struct figure *f, const struct queue *queue)
+{
+  json_t *runs = json_array();
+  for (int k = 0; k < f->n; k++) {
+    const struct figure_case *one = &f->cases[k];
+    const struct run *run = &queue->run[one->run];
+    json_array_append_new(runs, json_pack("{s:s, s:s, s:s, s:s, s:s?, s:s}", "id", run->id, "name",
+                                          one->label, "solver", one->solver, "outcome",
+                                          run->finished ? outcome_words[run->outcome] : "not run",
+                                          "reason", run->finished ? run->reason : NULL, "label",
+                                          one->name ? one->name : ""));
+  }
+  return runs;
+}
+
+/* What the report, the index and the claims want to know of a figure. */
 static status write_facts(const struct figure *f, const struct queue *queue)
 {
-  static const char *const kinds[] = {"frames", "series", "metric", "table"};
+  static const char *const kinds[] = {"frames", "series", "metric", "table", "program"};
+  const struct recipe *r = f->recipe;
   const struct path path = path_of("%s/figure.json", f->data.text);
-  json_t *runs = json_array();
   struct new_file file;
-  for (int k = 0; k < f->n; k++)
-    json_array_append_new(runs, json_string(queue->run[f->cases[k].run].id));
-  json_t *object =
-    json_pack("{s:s, s:s, s:s, s:i, s:s, s:O, s:o}", "name", f->recipe->name, "about",
-              f->recipe->about, "statement", f->recipe->statement, "order", f->recipe->order,
-              "kind", kinds[f->recipe->extract.kind], "files", f->files, "runs", runs);
+  json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:s, s:s?, s:s?, s:s?, s:s, s:O, s:O?, s:o}",
+                             "name", r->name, "about", r->about, "statement", r->statement, "order",
+                             r->order, "kind", kinds[r->extract.kind], "paper", r->paper, "place",
+                             r->place, "departures", r->departures, "size", f->size.text, "files",
+                             f->files, "values", f->values, "runs", runs_json(f, queue));
   status result = object ? file_begin(&file, path.text)
                          : user_error("%s/recipe.yaml: a text is not UTF-8", f->folder.text);
   if (result == OK) {
@@ -83,13 +104,14 @@ static status write_facts(const struct figure *f, const struct queue *queue)
 
 static status finish(struct figure *f, const struct queue *queue, const char *out)
 {
+  f->out = path_of("%s", out);
   f->data = path_of("%s/%s", out, f->recipe->name);
   TRY(figure_extract(f, queue));
   const int is_table = f->recipe->extract.kind == EXTRACT_TABLE;
   if (!is_table) TRY(figure_draw(f, out));
   TRY(write_facts(f, queue));
   if (is_table)
-    printf("%s/table.dat\n", f->data.text);
+    printf("%s/%s.csv\n%s/%s.md\n", out, f->recipe->name, out, f->recipe->name);
   else
     printf("%s/%s.png\n%s/%s.svg\n", out, f->recipe->name, out, f->recipe->name);
   fflush(stdout);
@@ -129,7 +151,9 @@ static status tell_crashes(const struct queue *queue)
 static status work(const struct request *r, struct queue *queue, struct figure *figures, int *n)
 {
   struct names all = {NULL, 0}, solvers = {NULL, 0};
-  const struct path out = r->out ? path_of("%s", r->out) : path_of("%s/figures", r->results);
+  const struct path out = r->out
+                            ? path_of("%s", r->out)
+                            : path_of("%s/figures%s", r->results, r->paper_size ? "/paper" : "");
   const int every = r->all || r->standard;
   if (every) all = recipe_names();
   status result = solver_names(&solvers);

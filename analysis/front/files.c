@@ -197,3 +197,14 @@ status hash_file(unsigned long long *hash, const char *path)
   free(text);
   return OK;
 }
+
+void file_look_beside(char **scene, const char *from)
+{
+  const char *slash = strrchr(from, '/');
+  if (!slash || **scene == '/' || !strchr(*scene, '.') || path_is_file(*scene)) return;
+  const struct path near = path_of("%.*s/%s", (int)(slash - from), from, *scene);
+  char *found = path_is_file(near.text) ? realpath(near.text, NULL) : NULL;
+  if (!found) return; /* the run says what is wrong */
+  free(*scene);
+  *scene = found;
+}

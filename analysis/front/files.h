@@ -53,4 +53,8 @@ status hash_file(unsigned long long *hash, const char *path);
 /* A copy of a text, or of a formatted one; NULL: no memory left. */
 __attribute__((format(printf, 1, 2))) char *text_make(const char *format, ...);
 
+/* A scene file that a plan or recipe names is looked for from here, then from the folder of `from`,
+ * the file that names it: *scene, of malloc, becomes its whole path where it is found there. */
+void file_look_beside(char **scene, const char *from);
+
 #endif

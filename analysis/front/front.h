@@ -4,11 +4,13 @@
 #include "../../core/base/status.h"
 
 status verb_figure(int argc, char **argv);
+status verb_frames(int argc, char **argv);
 status verb_report(int argc, char **argv);
 status verb_precision(int argc, char **argv);
 status verb_stability(int argc, char **argv);
 status verb_convergence(int argc, char **argv);
 status verb_profile(int argc, char **argv);
+status verb_claims(int argc, char **argv);
 status verb_doctor(int argc, char **argv);
 status verb_compare(int argc, char **argv);
 status verb_sweep(int argc, char **argv);

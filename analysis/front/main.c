@@ -30,7 +30,10 @@ static const char usage[] =
   "  compare RESULTS BASELINE.json   exit code 1: something got worse\n"
   "         [--junit FILE] [--json FILE]\n"
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
+  "  claims [--results DIR] [--json FILE]   what the papers state, and what of it holds\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
+  "  frames FILE.vtkhdf        its frames as PNG, and as a film where ffmpeg is there\n"
+  "         [-o DIR] [--colour speed|p] [--film FILE.mp4] [--quiet]\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
   "  show NAME [--json]        a solver, scene, metric or figure\n"
   "  speed [--json FILE]       time per particle of search, iteration and step\n"
@@ -54,11 +57,10 @@ static const char usage[] =
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",        "speed",   "list",     "figure",
-                                    "report", "doctor",      "compare", "bless",    "precision",
-                                    "sweep",  "convergence", "profile", "stability"};
-static const char *const later[] = {"claims"};
-enum { NUM_VERBS = sizeof verbs / sizeof *verbs, NUM_LATER = sizeof later / sizeof *later };
+static const char *const verbs[] = {
+  "run",   "show",      "speed", "list",        "figure",  "report",    "doctor", "compare",
+  "bless", "precision", "sweep", "convergence", "profile", "stability", "frames", "claims"};
+enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
 
 /* Replace this process by the variant; returns only on failure. */
 static status start_variant(int argc, char **argv, struct variant v)
@@ -97,9 +99,6 @@ static status start_show(int argc, char **argv)
 
 static status unknown(const char *verb)
 {
-  for (int k = 0; k < NUM_LATER; k++)
-    if (strcmp(verb, later[k]) == 0)
-      return user_error("this version does not have the verb '%s' yet", verb);
   const char *near = nearest_name(verb, verbs, NUM_VERBS);
   return near ? user_error("unknown verb '%s'; the nearest known one is '%s'", verb, near)
               : user_error("unknown verb '%s'; 'sphbench --help' lists the known ones", verb);
@@ -117,12 +116,14 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "figure") == 0) return verb_figure(argc, argv);
   if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
   if (strcmp(verb, "sweep") == 0) return verb_sweep(argc, argv);
+  if (strcmp(verb, "frames") == 0) return verb_frames(argc, argv);
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
   if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);
   if (strcmp(verb, "stability") == 0) return verb_stability(argc, argv);
   if (strcmp(verb, "convergence") == 0) return verb_convergence(argc, argv);
   if (strcmp(verb, "profile") == 0) return verb_profile(argc, argv);
+  if (strcmp(verb, "claims") == 0) return verb_claims(argc, argv);
   if (strcmp(verb, "doctor") == 0) return verb_doctor(argc, argv);
   return unknown(verb);
 }

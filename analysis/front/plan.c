@@ -103,19 +103,6 @@ static status check_runs(const struct plan *p, unsigned number)
   return OK;
 }
 
-/* A scene file is looked for from here, then from the plan's folder. */
-static void find_scene(struct plan_runs *runs, const char *plan)
-{
-  const char *slash = strrchr(plan, '/');
-  if (!slash || *runs->scene == '/' || !strchr(runs->scene, '.') || path_is_file(runs->scene))
-    return;
-  const struct path near = path_of("%.*s/%s", (int)(slash - plan), plan, runs->scene);
-  char *found = path_is_file(near.text) ? realpath(near.text, NULL) : NULL;
-  if (!found) return; /* the run says what is wrong */
-  free(runs->scene);
-  runs->scene = found;
-}
-
 status plan_read(const char *name, struct plan **plan)
 {
   const struct path data = data_folder();
@@ -132,7 +119,7 @@ status plan_read(const char *name, struct plan **plan)
   status result = p->num_runs ? OK : yaml_source_refuse(source, "name", "the plan has no runs");
   for (unsigned k = 1; k <= p->num_runs && result == OK; k++) {
     result = check_runs(p, k);
-    find_scene(&p->runs[k - 1], path.text);
+    file_look_beside(&p->runs[k - 1].scene, path.text);
   }
   if (result == OK)
     *plan = p;

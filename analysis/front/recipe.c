@@ -27,6 +27,16 @@ static const cyaml_schema_field_t vary_fields[] = {
   NEEDED_TEXT(recipe_vary, name), LIST(recipe_vary, values, num_values, text_value),
   CYAML_FIELD_END};
 
+static const cyaml_schema_field_t size_fields[] = {
+  TEXT(recipe_size, dt),
+  TEXT(recipe_size, t_end),
+  TEXT(recipe_size, spacing),
+  TEXT(recipe_size, frames),
+  LIST(recipe_size, set, num_set, text_value),
+  CYAML_FIELD_MAPPING_PTR("vary", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct recipe_size,
+                          vary, vary_fields),
+  CYAML_FIELD_END};
+
 static const cyaml_schema_field_t runs_fields[] = {
   NEEDED_TEXT(recipe_runs, scene),
   TEXT(recipe_runs, label),
@@ -40,6 +50,8 @@ static const cyaml_schema_field_t runs_fields[] = {
   LIST(recipe_runs, set, num_set, text_value),
   CYAML_FIELD_MAPPING_PTR("vary", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct recipe_runs,
                           vary, vary_fields),
+  CYAML_FIELD_MAPPING_PTR("at_paper_size", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL,
+                          struct recipe_runs, at_paper_size, size_fields),
   CYAML_FIELD_END};
 static const cyaml_schema_value_t runs_value = {
   CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct recipe_runs, runs_fields)};
@@ -47,14 +59,21 @@ static const cyaml_schema_value_t runs_value = {
 static const cyaml_strval_t kinds[] = {{"frames", EXTRACT_FRAMES},
                                        {"series", EXTRACT_SERIES},
                                        {"metric", EXTRACT_METRIC},
-                                       {"table", EXTRACT_TABLE}};
+                                       {"table", EXTRACT_TABLE},
+                                       {"program", EXTRACT_PROGRAM}};
+static const cyaml_schema_field_t beside_fields[] = {
+  NEEDED_TEXT(recipe_beside, file), NEEDED_TEXT(recipe_beside, about), CYAML_FIELD_END};
 static const cyaml_schema_field_t extract_fields[] = {
-  CYAML_FIELD_ENUM("kind", CYAML_FLAG_STRICT, struct recipe_extract, kind, kinds, 4),
+  CYAML_FIELD_ENUM("kind", CYAML_FLAG_STRICT, struct recipe_extract, kind, kinds, 5),
   LIST(recipe_extract, times, num_times, number_value),
   TEXT(recipe_extract, colour),
   LIST(recipe_extract, columns, num_columns, text_value),
   NUMBER(recipe_extract, scale_x),
   YES_OR_NO(recipe_extract, fit),
+  CYAML_FIELD_MAPPING_PTR("beside", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct recipe_extract,
+                          beside, beside_fields),
+  TEXT(recipe_extract, program),
+  LIST(recipe_extract, arguments, num_arguments, text_value),
   CYAML_FIELD_END};
 
 static const cyaml_schema_field_t labels_fields[] = {TEXT(recipe_labels, x), TEXT(recipe_labels, y),
@@ -76,6 +95,9 @@ static const cyaml_schema_field_t recipe_fields[] = {
   NEEDED_TEXT(recipe, statement),
   CYAML_FIELD_INT("order", CYAML_FLAG_OPTIONAL, struct recipe, order),
   YES_OR_NO(recipe, standard),
+  TEXT(recipe, paper),
+  TEXT(recipe, place),
+  TEXT(recipe, departures),
   TEXT(recipe, runs_of),
   LIST(recipe, runs, num_runs, runs_value),
   CYAML_FIELD_MAPPING("extract", CYAML_FLAG_DEFAULT, struct recipe, extract, extract_fields),
@@ -141,27 +163,56 @@ static status check_frames(const struct recipe *r)
   return OK;
 }
 
+static status check_set(const struct recipe *r, const char *at, char *const *set, unsigned n)
+{
+  const struct path place = path_of("%s.set", at);
+  for (unsigned k = 0; k < n; k++)
+    if (!strchr(set[k], '='))
+      return yaml_source_refuse(r->source, place.text, "'%s' found, KEY=VALUE expected", set[k]);
+  return OK;
+}
+
+static status check_vary(const struct recipe *r, const char *at, const struct recipe_vary *vary)
+{
+  if (!vary || vary->num_values) return OK;
+  return yaml_source_refuse(r->source, at, "vary has no values");
+}
+
 static status check_runs(const struct recipe *r, const struct recipe_runs *runs, unsigned number)
 {
-  const struct path at = path_of("runs[%u]", number), set = path_of("%s.set", at.text);
-  if (runs->vary && !runs->vary->num_values)
-    return yaml_source_refuse(r->source, at.text, "vary has no values");
+  const struct path at = path_of("runs[%u]", number), size = path_of("%s.at_paper_size", at.text);
+  const struct recipe_size *paper = runs->at_paper_size;
+  TRY(check_vary(r, at.text, runs->vary));
   if (r->extract.kind == EXTRACT_METRIC && !runs->vary)
     return yaml_source_refuse(r->source, at.text, "kind metric needs a parameter to vary");
-  for (unsigned i = 0; i < runs->num_set; i++)
-    if (!strchr(runs->set[i], '='))
-      return yaml_source_refuse(r->source, set.text, "'%s' found, KEY=VALUE expected",
-                                runs->set[i]);
-  return OK;
+  TRY(check_set(r, at.text, runs->set, runs->num_set));
+  if (!paper) return OK;
+  TRY(check_vary(r, size.text, paper->vary));
+  return check_set(r, size.text, paper->set, paper->num_set);
+}
+
+static status check_paper(const struct recipe *r)
+{
+  return !r->paper == !r->place
+           ? OK
+           : yaml_source_refuse(r->source, "name", "paper and place belong together");
 }
 
 static status check(const struct recipe *r)
 {
+  const struct recipe_extract *e = &r->extract;
+  TRY(check_paper(r));
   for (unsigned k = 0; k < r->num_runs; k++) TRY(check_runs(r, &r->runs[k], k + 1));
-  if (r->extract.kind == EXTRACT_FRAMES) return check_frames(r);
-  return r->extract.num_columns
-           ? OK
-           : yaml_source_refuse(r->source, "extract", "columns is missing or empty");
+  if (e->kind == EXTRACT_FRAMES) return check_frames(r);
+  if (!e->program == (e->kind == EXTRACT_PROGRAM))
+    return yaml_source_refuse(r->source, "extract",
+                              "kind program and the key program belong "
+                              "together");
+  if (e->beside && e->kind != EXTRACT_TABLE)
+    return yaml_source_refuse(r->source, "extract.beside", "only kind table has it");
+  if (e->kind == EXTRACT_PROGRAM) return OK;
+  return e->num_columns ? OK
+                        : yaml_source_refuse(r->source, "extract", "columns is missing or empty");
 }
 
 /* The runs of the recipe that `runs_of` names become this one's own. */
@@ -169,7 +220,8 @@ static status adopt_runs(struct recipe *r)
 {
   struct yaml_source *source;
   void *data;
-  if (!r->runs_of == !r->num_runs)
+  const int may_have_none = r->extract.kind == EXTRACT_PROGRAM && !r->runs_of;
+  if (!r->runs_of == !r->num_runs && !may_have_none)
     return yaml_source_refuse(r->source, "name", "either runs or runs_of is needed");
   if (!r->runs_of) return OK;
   const struct path folder = recipe_folder(r->runs_of);
@@ -202,12 +254,67 @@ status recipe_read(const char *name, struct recipe **recipe)
   struct recipe *r = data;
   r->source = source;
   status result = adopt_runs(r);
+  for (unsigned k = 0; k < r->num_runs; k++) file_look_beside(&r->runs[k].scene, path.text);
   if (result == OK) result = check(r);
   if (result == OK)
     *recipe = r;
   else
     recipe_free(r);
   return result;
+}
+
+/* --- the size --- */
+
+static void exchange(char **a, char **b)
+{
+  char *const kept = *a;
+  if (!*b) return;
+  *a = *b;
+  *b = kept;
+}
+
+/* KEY=VALUE takes the place of the entry with that key, or is added. */
+static status exchange_set(struct recipe_runs *runs, char **entry)
+{
+  const size_t key = strcspn(*entry, "=") + 1;
+  for (unsigned k = 0; k < runs->num_set; k++)
+    if (strncmp(runs->set[k], *entry, key) == 0) {
+      exchange(&runs->set[k], entry);
+      return OK;
+    }
+  char **more = realloc(runs->set, (runs->num_set + 1) * sizeof *more);
+  if (!more) return status_set(ERR_MEMORY, "out of memory");
+  runs->set = more;
+  runs->set[runs->num_set++] = *entry;
+  *entry = NULL;
+  return OK;
+}
+
+status recipe_at_paper_size(struct recipe *recipe)
+{
+  for (unsigned k = 0; k < recipe->num_runs; k++) {
+    struct recipe_runs *runs = &recipe->runs[k];
+    struct recipe_size *size = runs->at_paper_size;
+    if (!size) continue;
+    exchange(&runs->dt, &size->dt);
+    exchange(&runs->t_end, &size->t_end);
+    exchange(&runs->spacing, &size->spacing);
+    exchange(&runs->frames, &size->frames);
+    for (unsigned i = 0; i < size->num_set; i++) TRY(exchange_set(runs, &size->set[i]));
+    if (size->vary) {
+      struct recipe_vary *const kept = runs->vary;
+      runs->vary = size->vary;
+      size->vary = kept;
+    }
+  }
+  return OK;
+}
+
+bool recipe_is_paper_size(const struct recipe *recipe, bool paper_size)
+{
+  for (unsigned k = 0; k < recipe->num_runs; k++)
+    if (recipe->runs[k].at_paper_size) return paper_size;
+  return true;
 }
 
 void recipe_free(struct recipe *recipe)

@@ -89,6 +89,19 @@ static int find(const struct variant *v, struct path *executable)
   return 0;
 }
 
+status program_executable(const char *name, struct path *executable)
+{
+  static const char *const places[] = {".", "../libexec/sphbench"};
+  const struct path own = own_folder();
+  for (int k = 0; k < 2; k++) {
+    *executable = path_of("%s/%s/sphbench-analysis-%s", own.text, places[k], name);
+    if (access(executable->text, X_OK) == 0) return OK;
+  }
+  return user_error("'sphbench-analysis-%s' is not built, which is made of "
+                    "analysis/figures/%s.c",
+                    name, name);
+}
+
 static int any_of(const char *backend)
 {
   for (int k = 0; k < NUM_VARIANTS; k++) {

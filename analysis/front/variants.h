@@ -26,6 +26,9 @@ status variant_executable(const struct variant *v, struct path *executable);
 /* Any variant that is built, `wanted` if it is; ERR_USER: none. All know the same names. */
 status variant_any(const struct variant *wanted, struct variant *found);
 
+/* The program sphbench-analysis-NAME of a figure. ERR_USER: it is not built. */
+status program_executable(const char *name, struct path *executable);
+
 /* Where the recipes of figures and the reference data lie: <this>/paper-figures, ... */
 struct path data_folder(void);
 

@@ -86,10 +86,7 @@ expect 0 'sphbench ' --version
 expect 0 'figure NAME'
 expect 2 "the nearest known one is 'run'" rum
 expect 2 "'sphbench --help' lists" zzzzzzzz
-for verb in claims; do
-  expect 2 "does not have the verb '$verb' yet" $verb
-  "$dir/bin/sphbench" --help | grep -qw "  $verb" && fail "--help offers $verb"
-done
+expect 2 "there is no folder 'no-such'" claims --results no-such
 expect 2 "allowed is openmp or cuda" run scene --backend opencl
 expect 2 "allowed is openmp or cuda" run scene --backend=
 expect 2 "allowed is 2 or 3" run scene --dim 4
@@ -203,6 +200,88 @@ mine 0 '' --quiet
 [[ ! -s $dir/err ]] || fail '--quiet is not quiet'
 printf '\n' >>"$dir/bin/variants/sphbench-openmp-2d-f64"
 mine 0 '4 runs done, 0 were there already'
+
+# --- sizes, tables, programs ---
+
+paper='paper: sisph
+place: Fig. 4'
+of_paper='runs:
+  - scene: s
+    solvers: [good]
+    spacing: 2
+    set: [a=1, b=2]
+    at_paper_size: {spacing: 1, set: [b=3, c=4]}'
+recipe "$head
+place: Fig. 4
+$body"
+mine 2 'paper and place belong together'
+mine 2 "--size: 'big' found, allowed is desk or paper" --size big
+recipe "$head
+$paper
+$of_paper
+extract: {kind: table, columns: [error, iterations.max, status]}"
+: >"$dir/calls"
+mine 0 'mine.md'
+grep -qF -- '--spacing 2 --set a=1 --set b=2' "$dir/calls" || fail 'not the desk size'
+grep -qF 'good,4,3,ok' "$dir/results/figures/mine.csv" || fail 'the table is wrong'
+grep -qF 'desk size: 3 particles' "$dir/results/figures/mine.md" || fail 'no size in the table'
+grep -qF '| good | 4 | 3 | ok |' "$dir/results/figures/mine.md" || fail 'no table in Markdown'
+: >"$dir/calls"
+mine 0 'paper/mine.md' --size paper
+grep -qF -- '--spacing 1 --set a=1 --set b=3 --set c=4' "$dir/calls" || fail 'not the paper size'
+grep -qF 'paper size: 3 particles' "$dir/results/figures/paper/mine.md" || fail 'no paper size'
+printf 'run,theirs [1]\ngood,7\n' >"$dir/mine/theirs.csv"
+recipe "$head
+$of_paper
+extract: {kind: table, columns: [error], beside: {file: theirs.csv, about: theirs}}"
+mine 0 mine.csv
+grep -qF 'good,4,7' "$dir/results/figures/mine.csv" || fail 'not beside the paper'
+printf 'run,theirs [1]\n"good, dt 1",7\n' >"$dir/mine/theirs.csv"
+mine 2 "no run of the figure is called 'good, dt 1'"
+
+cat >"$dir/bin/sphbench-analysis-played" <<'PLAYED'
+#!/usr/bin/env bash
+out=$1
+[[ $2 == fail ]] && echo 'played: no way' >&2 && exit 1
+[[ $2 == bare ]] && echo '1 2' >"$out/data.dat" && exit
+[[ $2 == word ]] && echo '{"n": "many"}' >"$out/values.json" && exit
+printf '# played\n# columns: x [m] | y\n1 2\n' >"$out/data.dat"
+echo "{\"n\": $(($# - 3)), \"none\": null}" >"$out/values.json"
+last=${*: -1}
+[[ $last == good=*.json && -f ${last#good=} ]]
+PLAYED
+chmod +x "$dir/bin/sphbench-analysis-played"
+echo "width = 300; height = 200; load shared.'style.gp'; load 'contents.gp'
+plot 'data.dat' using 1:2 lt colour_good title title[1]" >"$dir/mine/mine.gp"
+played() {
+  recipe "$head
+$of_paper
+extract: {kind: program, program: $1, arguments: [$2]}"
+}
+played played x
+mine 0 'mine.png'
+grep -qF '"n": 1' "$dir/results/figures/mine/figure.json" || fail 'no values'
+played absent x
+mine 2 'analysis/figures/absent.c'
+played played fail
+mine 2 'played: no way'
+played played bare
+mine 2 "are not '# what it is'"
+played played word
+mine 2 "'n' is no number"
+recipe "$head
+$of_paper
+extract: {kind: series, program: played, columns: [error]}"
+mine 2 'kind program and the key program belong together'
+rm "$dir/bin/sphbench-analysis-played"
+recipe "$head
+$body"
+cat >"$dir/mine/mine.gp" <<'GP'
+width = 300; height = 200
+load shared.'style.gp'
+load 'contents.gp'
+plot for [k = 1:n] file[k] using 1:2 with points lt colour[k] title title[k]
+GP
 
 # --- how runs end ---
 

@@ -1,0 +1,2 @@
+left = 310.0
+load shared.'dual-fig10/dual-fig10.gp'

@@ -1,0 +1,2 @@
+one_solver = 0
+load shared.'coherence.gp'

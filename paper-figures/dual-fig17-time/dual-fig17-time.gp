@@ -1,0 +1,1 @@
+load shared.'patch-iterations/patch-iterations.gp'

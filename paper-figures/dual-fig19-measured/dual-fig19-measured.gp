@@ -1,0 +1,2 @@
+one_solver = 1
+load shared.'coherence.gp'

@@ -1,0 +1,6 @@
+width = 1000; height = 480
+load shared.'style.gp'
+load shared.'shades.gp'
+load 'contents.gp'
+load shared.'curves.gp'
+plot for [k = 1:n] file[k] using 1:2 with lines ls 200 + k title title[k]
