@@ -124,7 +124,7 @@ class Programs(cli_case.Case):
 
     def test_descent(self):
         """Psi of Eq. (7) after three iterations, over that of a converged step."""
-        K = 1e7
+        K = 1e6
         three = self.blocks("three", "fixed_iterations=3", f"K={K}")
         exact = self.blocks("exact", "tolerance=1e-9", "max_iterations=5000", f"K={K}")
         values, rows = self.program("descent", "functions", "--", three, exact)
@@ -139,7 +139,7 @@ class Programs(cli_case.Case):
         self.assertAlmostEqual(values["slope_B2"], 1.1 ** 3 - 1, 12)
 
     def test_density(self):
-        run = self.blocks("density", "fixed_iterations=3", "K=1e7")
+        run = self.blocks("density", "fixed_iterations=3", "K=1e6")
         _, rows = self.program("density", "--", run)
         expected = lambdas(self.frames("density")[-1]["position"], 0.2, 0.1)
         self.assertEqual(len(rows["density"]), 64)
