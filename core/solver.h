@@ -105,6 +105,9 @@ struct solver {
    * full stop in text [size], which is empty before. `speed`: the largest that the energy of the
    * start allows [m/s]. Optional. */
   void (*warn)(const void *state, double speed, char *text, size_t size);
+  /* With these parameters, do walls push with p_b = p_i, rho_b = rho_0 besides p_i/rho_i^2? Then
+   * rigid bodies take both. Optional: with the latter alone. */
+  int (*mirrors)(const void *state);
 };
 
 /* --- what the runner does for a solver; each keeps the state's VIEW and private field pointers

@@ -1,6 +1,6 @@
 # Rows of runs by columns of times; particles coloured by one quantity, equal axes, the same colour
 # scale everywhere. A script sets cell_width and cell_height [px] of a picture and for each time the
-# step [m] of the axes' marks, and then loads this file.
+# step [m] of the axes' marks, if need be `upward`, and then loads this file.
 
 load 'contents.gp'
 if (!exists('left')) { left = 190.0 } # room for the rows' labels [px]
@@ -13,7 +13,8 @@ load shared.'style.gp'
 px_of_mark = 7.0
 nothing = '/dev/null'
 y_label_offset = 0.3
-y_label = cell_height > 60 ? 'y [m]' : ''
+if (!exists('upward')) { upward = 'y [m]' }
+y_label = cell_height > 60 ? upward : ''
 
 unset key
 unset grid

@@ -309,6 +309,12 @@ static void warn(const void *self, double speed, char *text, size_t size)
   warn_of_kappa((double)((const state *)self)->kappa, text, size);
 }
 
+static int mirrors(const void *self)
+{
+  (void)self;
+  return 1;
+}
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 static const struct field fields[] = FIELD_TABLE(FIELDS);
 
@@ -323,7 +329,7 @@ const struct solver solver_helmholtz = {
   .needs = HAS(x) | HAS(v) | HAS(m) | HAS(rho) | HAS(V) | HAS(p),
   .can = CAN(2D) | CAN(3D) | CAN(WALLS) | CAN(FREE_SURFACE) | CAN(GRAVITY) | CAN(XSPH) |
          CAN(PERIODIC) | CAN(PROJECT) | CAN(MOMENTUM) | CAN(ISOTROPIC) | CAN(FLUIDS) |
-         CAN(MOVING_WALLS) | CAN(EMITTERS) | CAN(VISCOSITY) | CAN(TENSION),
+         CAN(MOVING_WALLS) | CAN(BODIES) | CAN(EMITTERS) | CAN(VISCOSITY) | CAN(TENSION),
   .params = params,
   .num_params = COUNT(params),
   .fields = fields,
@@ -337,4 +343,5 @@ const struct solver solver_helmholtz = {
   .uses = NULL,
   .stop = NULL,
   .warn = warn,
+  .mirrors = mirrors,
 };

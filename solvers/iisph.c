@@ -200,11 +200,15 @@ static void warn(const void *self, double speed, char *text, size_t size)
              (double)s->omega, most);
 }
 
+static int mirrors(const void *self)
+{
+  return ((const state *)self)->wall_pressure == (real)MIRRORED;
+}
+
 static int uses(const void *self, const char *field)
 {
   const state *s = (const state *)self;
-  const int mirrors = s->p.n_all > s->p.n && s->wall_pressure == (real)MIRRORED;
-  return strcmp(field, "wall") != 0 || mirrors;
+  return strcmp(field, "wall") != 0 || (s->p.n_all > s->p.n && mirrors(s));
 }
 
 static const struct param params[] = PARAM_TABLE(PARAMS);
@@ -235,4 +239,5 @@ const struct solver solver_iisph = {
   .uses = uses,
   .stop = NULL,
   .warn = warn,
+  .mirrors = mirrors,
 };

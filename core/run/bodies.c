@@ -199,6 +199,7 @@ static void push_body(struct run *run, int number, struct carrying *s, double dt
   struct body *b = &run->body[number];
   double force[3], torque[3], I[3][3];
   s->which = number + 1;
+  s->mirrored = run->solver->mirrors && run->solver->mirrors(run->state);
   physics_push(run->view, s, force, torque);
   for (int d = 0; d < DIM; d++)
     b->velocity[d] += dt * (force[d] / b->mass + (double)run->view->gravity.c[d]);

@@ -20,6 +20,7 @@ struct carrying {
   VIEW;
   struct pose pose[MOST_BODIES];
   int which, axis; /* body from 1; component */
+  real mirrored;   /* 1: p_b = p_i pushes, too; 0: not */
 };
 
 /* V + omega x (x - c) */

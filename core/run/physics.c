@@ -72,7 +72,7 @@ STAGE void place(const struct carrying *s, int k)
 }
 
 /* What fluid particle i does to body `which` in a second, Akinci et al. 2012, Eq. (10):
- * F_i = m_i sum_b m_b p_i/rho_i^2 grad_i W_ib;   here in p.dv */
+ * F_i = m_i sum_b m_b (p_i/rho_i^2 + [mirrored] p_i/rho_0^2) grad_i W_ib;   here in p.dv */
 STAGE void push(const struct carrying *s, int i)
 {
   const struct particles p = s->p;
@@ -82,7 +82,8 @@ STAGE void push(const struct carrying *s, int i)
     const lanes mine = at_least(1 - apart * apart, 0); /* 1 for its particles, 0 for others */
     F = add(F, scale(mine * of(p.m, ib), gradW(&s->nb, ib)));
   }
-  p.dv[i] = times(p.m[i] * p.p[i] / sq(p.rho[i]), sum(F));
+  const real over = 1 / sq(p.rho[i]) + s->mirrored / sq(s->rho0);
+  p.dv[i] = times(p.m[i] * p.p[i] * over, sum(F));
 }
 STAGE real push_along(const struct carrying *s, int i) { return s->p.dv[i].c[s->axis]; }
 /* (x_i - c) x F_i: the same torque as at x_b, since F_ib points along x_ib */
@@ -139,6 +140,7 @@ static void take_view(struct carrying *s, const struct view *view)
 {
   s->p = view->p;
   s->nb = view->nb;
+  s->rho0 = view->rho0;
 }
 
 void physics_carry(const struct view *view, struct carrying *s)
