@@ -1,4 +1,7 @@
 /* Dam breaks of shallow-water theory. */
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_roots.h>
+
 #include "internal.h"
 
 /* The rarefaction into water of depth h0: c = sqrt(g h) = (2 c0 - x/t)/3, u = 2 (c0 - c). */
@@ -18,10 +21,31 @@ struct reference_shallow reference_ritter(struct reference_dry_bed d, double x, 
 }
 
 /* Speed behind the rarefaction minus that behind the bore, for the intermediate depth hm. */
-static double mismatch(const struct reference_wet_bed *w, double hm)
+static double mismatch(double hm, void *wet_bed)
 {
+  const struct reference_wet_bed *w = wet_bed;
   return 2 * (sqrt(w->g * w->hl) - sqrt(w->g * hm)) -
          (hm - w->hr) * sqrt(w->g * (hm + w->hr) / (2 * hm * w->hr));
+}
+
+/* It falls from > 0 at hr to < 0 at hl: Brent's method (GSL). NaN: no memory. */
+static double intermediate_depth(struct reference_wet_bed w)
+{
+  enum { MOST = 200 };
+  const double close = 4e-16;
+  gsl_function f = {mismatch, &w};
+  gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+  double found = NAN;
+  if (!solver) return found;
+  int stop = gsl_root_fsolver_set(solver, &f, w.hr, w.hl) != GSL_SUCCESS;
+  for (int k = 0; k < MOST && !stop; k++) {
+    stop = gsl_root_fsolver_iterate(solver) != GSL_SUCCESS;
+    found = gsl_root_fsolver_root(solver);
+    stop |= gsl_root_test_interval(gsl_root_fsolver_x_lower(solver),
+                                   gsl_root_fsolver_x_upper(solver), 0, close) == GSL_SUCCESS;
+  }
+  gsl_root_fsolver_free(solver);
+  return found;
 }
 
 static bool is_wet_bed(const struct reference_wet_bed *w)
@@ -32,14 +56,7 @@ static bool is_wet_bed(const struct reference_wet_bed *w)
 struct reference_stoker_states reference_stoker_states(const struct reference_wet_bed *w)
 {
   if (!is_wet_bed(w)) return (struct reference_stoker_states){NAN, NAN, NAN, NAN, NAN};
-  /* mismatch falls from > 0 at hr to < 0 at hl; halve until no double lies between. */
-  double low = w->hr, high = w->hl;
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (middle <= low || middle >= high) break;
-    *(mismatch(w, middle) > 0 ? &low : &high) = middle;
-  }
-  const double hm = low;
+  const double hm = intermediate_depth(*w);
   const double um = 2 * (sqrt(w->g * w->hl) - sqrt(w->g * hm));
   return (struct reference_stoker_states){
     .hm = hm,
