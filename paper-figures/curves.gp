@@ -2,4 +2,4 @@
 # contents.gp and this file, and plots.
 set xlabel label_x
 set ylabel label_y
-set key outside right top vertical Left reverse
+set key outside right top vertical maxcols 1 Left reverse font ',11' spacing 1

@@ -395,6 +395,7 @@ static status solve(struct run *run, state *s)
   cg.rows.first = s->first;
   cg.rows.last = s->last;
   cg.rows.list = s->beside;
+  cg.rows.visits = s->at_cells.visits; /* a row's neighbours count as pairs do */
   cg.coef = s->alpha;
   cg.diag = s->diag;
   cg.weight = s->weight;

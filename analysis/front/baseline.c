@@ -177,7 +177,7 @@ status baseline_read(const char *path, json_t **baseline)
 
 static void put(FILE *out, const json_t *value, size_t digits)
 {
-  char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(digits));
+  char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(digits));
   fputs(text ? text : "null", out);
   free(text);
 }
@@ -191,7 +191,7 @@ static void put_run(FILE *out, const json_t *run)
   fputc('{', out);
   json_object_foreach((json_t *)run, key, part)
   {
-    fprintf(out, "%s\"%s\": ", n++ ? ", " : "", key);
+    fprintf(out, "%s\"%s\":", n++ ? "," : "", key);
     put(out, part, strcmp(key, "curves") == 0 ? 5 : 7);
   }
   fputc('}', out);

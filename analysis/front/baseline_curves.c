@@ -10,19 +10,18 @@ static double at(const json_t *array, size_t k)
   return json_is_number(number) ? json_number_value(number) : NAN;
 }
 
-/* The integral of the straight lines between the points from `low` to `high`; NaN: a point of them
- * is no number, or they do not reach so far. */
+/* The integral of the straight lines between the points from `low` to `high`, which lie between the
+ * first and the last; NaN: a point of them is no number. */
 static double integral(const json_t *time, const json_t *curve, double low, double high)
 {
-  double sum = 0, covered = 0;
+  double sum = 0;
   for (size_t k = 1; k < json_array_size(time); k++) {
     const double t0 = at(time, k - 1), t1 = at(time, k), from = fmax(t0, low), to = fmin(t1, high);
     if (!(to > from)) continue;
     const double rise = (at(curve, k) - at(curve, k - 1)) / (t1 - t0);
     sum += (to - from) * (at(curve, k - 1) + rise * (0.5 * (from + to) - t0));
-    covered += to - from;
   }
-  return covered > (1 - 1e-6) * (high - low) ? sum : NAN;
+  return sum;
 }
 
 json_t *curve_sample(const json_t *time, const json_t *curve, const double span[2])

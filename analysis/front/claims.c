@@ -8,6 +8,7 @@
 #include "../../core/base/yaml_source.h"
 #include "arguments.h"
 #include "front.h"
+#include "index.h"
 #include "json_out.h"
 #include "variants.h"
 
@@ -149,6 +150,7 @@ static status decide_all(const struct claims *all, const char *results, const ch
   status result =
     decided ? write_table(page.text, all, decided, count) : status_set(ERR_MEMORY, "out of memory");
   if (result == OK) result = json_out_finish(json_incref(list), own.text, json);
+  if (result == OK) result = index_write(results, evidence.figures.text);
   printf("%d hold, %d do not, %d cannot be decided; %s\n", count[HOLDS], count[HOLDS_NOT],
          count[UNDECIDED], page.text);
   json_decref(list);

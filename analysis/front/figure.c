@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "arguments.h"
+#include "figure_plan.h"
 #include "front.h"
+#include "index.h"
 
 enum { MOST_FIGURES = 256 };
 
@@ -148,6 +150,20 @@ static status tell_crashes(const struct queue *queue)
                     crashed, queue->n, run->argv[1], run->argv[3], run->reason, log.text);
 }
 
+static status draw(const struct request *r, struct queue *queue, struct figure *figures, int n,
+                   const char *out)
+{
+  qsort(figures, (size_t)n, sizeof *figures, by_order);
+  TRY(queue_work(queue));
+  if (!r->quiet)
+    fprintf(stderr, "%d runs done, %d were there already\n", queue->done, queue->n - queue->done);
+  TRY(folder_make(out));
+  const status drawn = finish_all(figures, n, queue, out);
+  TRY(index_write(r->results, out));
+  TRY(drawn);
+  return tell_crashes(queue);
+}
+
 static status work(const struct request *r, struct queue *queue, struct figure *figures, int *n)
 {
   struct names all = {NULL, 0}, solvers = {NULL, 0};
@@ -160,15 +176,8 @@ static status work(const struct request *r, struct queue *queue, struct figure *
   if (result == OK)
     result = prepare(r, every ? (const char *const *)all.name : r->names,
                      every ? all.n : r->num_names, &solvers, queue, figures, n);
-  if (result == OK) {
-    qsort(figures, (size_t)*n, sizeof *figures, by_order);
-    result = queue_work(queue);
-  }
-  if (result == OK && !r->quiet)
-    fprintf(stderr, "%d runs done, %d were there already\n", queue->done, queue->n - queue->done);
-  if (result == OK) result = folder_make(out.text);
-  if (result == OK) result = finish_all(figures, *n, queue, out.text);
-  if (result == OK) result = tell_crashes(queue);
+  if (result == OK && r->dry_run) result = figure_plan_show(queue);
+  if (result == OK && !r->dry_run) result = draw(r, queue, figures, *n, out.text);
   for (int k = 0; k < *n; k++) figure_free(&figures[k]);
   names_free(&all);
   names_free(&solvers);

@@ -4,6 +4,7 @@
 #include "../../core/base/status.h"
 
 status verb_figure(int argc, char **argv);
+status verb_frames(int argc, char **argv);
 status verb_report(int argc, char **argv);
 status verb_precision(int argc, char **argv);
 status verb_stability(int argc, char **argv);

@@ -8,13 +8,15 @@
 #include "files.h"
 
 /* How a run ended. O(name, word, meaning) */
-#define OUTCOME_LIST(O)                                                                            \
-  O(OK, "ok", "ran to its end")                                                                    \
-  O(DIVERGED, "diverged", "failed numerically, which is a result")                                 \
-  O(UNABLE, "unable", "was refused: the solver cannot do this scene, or a mistake in the request") \
-  O(CRASHED, "crashed", "ended by a signal or without a result")                                   \
-  O(TIMEOUT, "timeout", "was stopped at its time limit")                                           \
-  O(OOM, "oom", "needed more memory than its limit")
+#define OUTCOME_LIST(O)                                                          \
+  O(OK, "ok", "ran to its end")                                                  \
+  O(DIVERGED, "diverged", "failed numerically, which is a result")               \
+  O(UNABLE, "skipped",                                                           \
+    "was refused: the solver cannot do this scene, or a mistake in the request") \
+  O(CRASHED, "crashed", "ended by a signal or without a result")                 \
+  O(TIMEOUT, "timeout", "was stopped at its time limit")                         \
+  O(OOM, "oom", "needed more memory than its limit")                             \
+  O(INTERRUPTED, "interrupted", "was stopped from outside, and is to be run again")
 #define O(name, word, meaning) OUTCOME_##name,
 enum outcome { OUTCOME_LIST(O) NUM_OUTCOMES };
 #undef O

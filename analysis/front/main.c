@@ -18,7 +18,7 @@ static const char usage[] =
   "  run SCENE --solver NAME   one run; 'sphbench run --help' lists the flags\n"
   "  figure NAME...            run what is missing for a figure, then draw it (SVG and PNG)\n"
   "         --standard | --all    the standard ones; every one\n"
-  "         [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
+  "         [--size desk|paper] [--dry-run] [--results DIR] [-o DIR] [--jobs N] [--quiet]\n"
   "  sweep PLAN   every run of a plan, once: a kill loses only what was running\n"
   "         [--results DIR] [--jobs N] [--timeout S] [--memory MIB] [--fresh] [--dry-run]\n"
   "         [--quiet] [--timed N [--threads N]]   then take the time of each, N times\n"
@@ -32,6 +32,8 @@ static const char usage[] =
   "  bless RESULTS BASELINE.json --reason TEXT   make RESULTS the baseline, and show what changes\n"
   "  claims [--results DIR] [--json FILE]   what the papers state, and what of it holds\n"
   "  report DIR -o FILE.html   one page with the figures, tables and origin of results\n"
+  "  frames FILE.vtkhdf        its frames as PNG, and as a film where ffmpeg is there\n"
+  "         [-o DIR] [--colour speed|p] [--film FILE.mp4] [--quiet]\n"
   "  list [solvers|scenes|metrics|figures|variants|plans] [--json]\n"
   "  show NAME [--json]        a solver, scene, metric or figure\n"
   "  speed [--json FILE]       time per particle of search, iteration and step\n"
@@ -55,9 +57,9 @@ static const char usage[] =
   "Exit codes: 0 done; 1 a comparison failed; 2 a mistake in the request; 3 a run failed;\n"
   "77 skipped (no GPU).\n";
 
-static const char *const verbs[] = {"run",    "show",        "speed",   "list",      "figure",
-                                    "report", "doctor",      "compare", "bless",     "precision",
-                                    "sweep",  "convergence", "profile", "stability", "claims"};
+static const char *const verbs[] = {
+  "run",   "show",      "speed", "list",        "figure",  "report",    "doctor", "compare",
+  "bless", "precision", "sweep", "convergence", "profile", "stability", "frames", "claims"};
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
 
 /* Replace this process by the variant; returns only on failure. */
@@ -114,6 +116,7 @@ static status carry_out(int argc, char **argv)
   if (strcmp(verb, "figure") == 0) return verb_figure(argc, argv);
   if (strcmp(verb, "report") == 0) return verb_report(argc, argv);
   if (strcmp(verb, "sweep") == 0) return verb_sweep(argc, argv);
+  if (strcmp(verb, "frames") == 0) return verb_frames(argc, argv);
   if (strcmp(verb, "compare") == 0) return verb_compare(argc, argv);
   if (strcmp(verb, "bless") == 0) return verb_bless(argc, argv);
   if (strcmp(verb, "precision") == 0) return verb_precision(argc, argv);

@@ -247,7 +247,7 @@ static status write_facts(const struct precision *p, const char *picture, const 
     "Error (%s) %s. Small marks: all points; lines: the Pareto front of each solver over spacing, "
     "time step and tolerance; bars: interval of the median of %ld repetitions. Failed runs stand "
     "in the margin. Differences below %.3g times are noise (%s).",
-    p->study.error, kind_meanings[p->kind], p->repeat, p->floor, p->floor_means);
+    study_error_about(&p->study), kind_meanings[p->kind], p->repeat, p->floor, p->floor_means);
   struct new_file file;
   json_t *facts =
     json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:O}", "name", name.text, "picture", picture,

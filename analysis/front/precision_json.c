@@ -241,6 +241,9 @@ static json_t *whole(const struct precision *p)
                              "kind", kind_words[p->kind], "meaning", kind_meanings[p->kind],
                              "points", points_json(p), "fronts", fronts_json(p, 0), "noise",
                              "floor", p->floor, "means", p->floor_means);
+  if (p->kind == KIND_TOTAL || p->kind == KIND_SPATIAL)
+    json_object_set_new(json_object_get(object, "error"), "about",
+                        json_string(study_error_about(s)));
   json_object_set_new(object, "pairs_fronts", fronts_json(p, 1));
   json_object_set_new(object, "table", table_json(p, 0, precision_targets));
   json_object_set_new(object, "density_table",

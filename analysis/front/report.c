@@ -13,7 +13,7 @@ static int same_run(const struct journal_entry *a, const struct journal_entry *b
   return !strcmp(a->scene, b->scene) && !strcmp(a->solver, b->solver) && !strcmp(a->what, b->what);
 }
 
-static int is_last(const struct journal *journal, int k)
+int report_is_last(const struct journal *journal, int k)
 {
   for (int later = k + 1; later < journal->n; later++)
     if (same_run(&journal->entry[k], &journal->entry[later])) return 0;
@@ -42,7 +42,7 @@ static status load_runs(struct report *r)
   if (!r->run) return status_set(ERR_MEMORY, "out of memory");
   for (int k = 0; k < r->journal.n; k++) {
     const struct journal_entry *entry = &r->journal.entry[k];
-    if (!is_last(&r->journal, k) || is_measurement(entry)) continue;
+    if (!report_is_last(&r->journal, k) || is_measurement(entry)) continue;
     const struct path path = run_file(r->results, entry->id, "json");
     const int has_facts = entry->outcome == OUTCOME_OK || entry->outcome == OUTCOME_DIVERGED;
     json_t *facts = has_facts ? json_load_file(path.text, 0, NULL) : NULL;
@@ -132,6 +132,7 @@ static void write_page(FILE *page, const struct report *r)
   page_metrics(page, r);
   page_figures(page, r, SORT_CURVES);
   page_compatibility(page, r);
+  page_runs(page, r);
   page_origin(page, r);
   page_end(page);
 }

@@ -10,6 +10,9 @@ struct report_run {
   json_t *facts; /* NULL: it has none */
 };
 
+/* Is this the last time that the journal has run this scene, solver and arguments? */
+int report_is_last(const struct journal *journal, int k);
+
 struct report {
   const char *results;
   struct journal journal;
@@ -28,11 +31,16 @@ void page_end(FILE *page);
 
 /* report_figures.c: figures of one sort. Pictures or data that are missing are said to be. */
 enum figure_sort { SORT_MEASURED, SORT_FRAMES, SORT_CURVES }; /* errors against costs and orders */
+enum figure_sort figure_sort_of(const struct report_figure *figure);
 void page_figures(FILE *page, const struct report *report, enum figure_sort sort);
 
 /* report_tables.c */
 void page_metrics(FILE *page, const struct report *report);
 void page_compatibility(FILE *page, const struct report *report);
 void page_origin(FILE *page, const struct report *report);
+
+/* report_runs.c: the state of every run that the journal knows, also of those that are only part of
+ * a measurement, with its reason and its command. */
+void page_runs(FILE *page, const struct report *report);
 
 #endif

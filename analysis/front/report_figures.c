@@ -4,6 +4,7 @@
 
 #include "html.h"
 #include "report.h"
+#include "runs.h"
 
 enum { MOST_SVG = 700 * 1024 /* bytes: thousands of particles are lighter as PNG */ };
 
@@ -178,7 +179,50 @@ static void put_table(FILE *page, const struct report_figure *figure)
   free(text);
 }
 
-static void put_figure(FILE *page, const struct report_figure *figure)
+/* --- where it is from --- */
+
+struct origin {
+  char commit[16], first[16], last[16]; /* the first letters; dates without the time */
+  int runs, dirty, commits;
+};
+
+static void note_origin(struct origin *o, const json_t *provenance)
+{
+  const char *date = text_in(provenance, "date");
+  char commit[sizeof o->commit], day[sizeof o->first];
+  snprintf(commit, sizeof commit, "%.10s", text_in(provenance, "commit"));
+  snprintf(day, sizeof day, "%.10s", date);
+  o->commits += o->runs == 0 || strcmp(o->commit, commit) != 0;
+  memcpy(o->commit, commit, sizeof commit);
+  if (o->runs == 0 || strcmp(day, o->first) < 0) memcpy(o->first, day, sizeof day);
+  if (o->runs == 0 || strcmp(day, o->last) > 0) memcpy(o->last, day, sizeof day);
+  o->dirty |= json_is_true(json_object_get(provenance, "dirty"));
+  o->runs++;
+}
+
+/* Of the runs that it was drawn from; nothing where its facts do not name them. */
+static void put_provenance(FILE *page, const char *results, const json_t *facts)
+{
+  struct origin o = {.runs = 0};
+  size_t k;
+  json_t *id;
+  json_array_foreach(json_object_get(facts, "runs"), k, id)
+  {
+    const char *name = json_string_value(id);
+    const struct path path = run_file(results, name ? name : "", "json");
+    json_t *run = json_load_file(path.text, 0, NULL);
+    if (run) note_origin(&o, json_object_get(run, "provenance"));
+    json_decref(run);
+  }
+  if (o.runs == 0) return;
+  fprintf(page, "<span>From %d runs", o.runs);
+  html_put(page, o.commits == 1 ? ", commit %s" : ", several commits, the last %s", o.commit);
+  if (o.dirty) fputs(" with changes", page);
+  html_put(page, strcmp(o.first, o.last) ? ", %s to %s" : ", %s", o.first, o.last);
+  fputs("</span>", page);
+}
+
+static void put_figure(FILE *page, const char *results, const struct report_figure *figure)
 {
   const json_t *facts = figure->facts;
   const char *command = text_in(facts, "command");
@@ -192,12 +236,13 @@ static void put_figure(FILE *page, const struct report_figure *figure)
            text_in(facts, "statement"), *command ? "" : "figure ",
            *command ? command : text_in(facts, "name"));
   put_data(page, figure);
+  put_provenance(page, results, facts);
   fputs("</p>\n</figure>\n", page);
 }
 
-static enum figure_sort sort_of(const json_t *facts)
+enum figure_sort figure_sort_of(const struct report_figure *figure)
 {
-  const char *kind = text_in(facts, "kind");
+  const char *kind = text_in(figure->facts, "kind");
   if (strcmp(kind, "measured") == 0) return SORT_MEASURED;
   return strcmp(kind, "frames") == 0 ? SORT_FRAMES : SORT_CURVES;
 }
@@ -210,8 +255,8 @@ void page_figures(FILE *page, const struct report *r, enum figure_sort sort)
                                        [SORT_CURVES] = "<h2 id=figures>Figures</h2>\n"};
   int n = 0;
   for (int k = 0; k < r->num_figures; k++) {
-    if (sort_of(r->figure[k].facts) != sort) continue;
+    if (figure_sort_of(&r->figure[k]) != sort) continue;
     if (n++ == 0) fputs(titles[sort], page);
-    put_figure(page, &r->figure[k]);
+    put_figure(page, r->results, &r->figure[k]);
   }
 }

@@ -179,6 +179,7 @@ static status identify(struct run *run)
 static int is_whole(const struct queue *queue, const struct journal_entry *entry)
 {
   if (entry->outcome == OUTCOME_TIMEOUT) return queue->limit > 0 && entry->seconds >= queue->limit;
+  if (entry->outcome == OUTCOME_INTERRUPTED) return 0;
   long had;
   if (entry->outcome == OUTCOME_OOM)
     return queue->memory > 0 && sscanf(entry->reason, OOM_REASON, &had) == 1 &&
@@ -273,6 +274,7 @@ double queue_known_time(const struct queue *queue, const struct run *run)
 {
   for (int k = queue->journal.n - 1; k >= 0; k--) {
     const struct journal_entry *e = &queue->journal.entry[k];
+    if (e->outcome == OUTCOME_INTERRUPTED) continue;
     if (!strcmp(e->scene, run->argv[1]) && !strcmp(e->solver, run->argv[3]) &&
         !strcmp(e->what, run->what))
       return e->seconds;

@@ -11,7 +11,7 @@ const char *const verdict_words[NUM_VERDICTS] = {"crashed",
 #define CRITERION(name, word, unit, limit, blow_up, meaning) word,
 #include "../../core/run/criteria.def"
 #undef CRITERION
-                                                 "stable", "timeout", "unable"};
+                                                 "stable", "timeout", "skipped"};
 
 enum verdict verdict_named(const char *word)
 {

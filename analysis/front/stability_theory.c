@@ -31,17 +31,15 @@ struct prediction predict(const struct candidate_solver *c, double spacing, doub
   return p;
 }
 
-/* The largest speed of a row's runs: of its largest stable step, else of the smallest. */
+/* The largest speed of a row's largest stable step; 0: none is, and a failed run's speed is none.
+ */
 static double row_speed(const struct stability *s, int method, int row)
 {
   const struct trial *best = NULL;
   for (int k = 0; k < s->n; k++) {
     const struct trial *t = &s->trial[k];
-    if (t->method != method || t->row != row || !(t->speed_max > 0)) continue;
-    const int stable = t->verdict == VERDICT_STABLE;
-    const int was = best && best->verdict == VERDICT_STABLE;
-    if (!best || stable > was || (stable == was && (stable ? t->dt > best->dt : t->dt < best->dt)))
-      best = t;
+    const int stable = t->verdict == VERDICT_STABLE && t->speed_max > 0;
+    if (t->method == method && t->row == row && stable && (!best || t->dt > best->dt)) best = t;
   }
   return best ? best->speed_max : 0;
 }

@@ -113,6 +113,7 @@ static status learn_scene(struct study *s, const struct path *executable)
   s->scene = told(executable, "show", s->ask.scene);
   if (!s->scene) return status_set(ERR_IO, "'%s' cannot show its scenes", executable->text);
   s->error = s->ask.error ? s->ask.error : json_string_value(json_object_get(s->scene, "error"));
+  s->metrics = told(executable, "list", "metrics");
   s->spacing = parameter_default(s->scene, "spacing");
   s->dt = parameter_default(s->scene, "dt");
   s->t_end = parameter_default(s->scene, "t_end");
@@ -369,6 +370,21 @@ void study_close(struct study *s)
   s->file = NULL;
   json_decref(s->scene);
   s->scene = NULL;
+  json_decref(s->metrics);
+  s->metrics = NULL;
+}
+
+const char *study_error_about(const struct study *s)
+{
+  size_t k;
+  json_t *row;
+  json_array_foreach(s->metrics, k, row)
+  {
+    const char *name = json_string_value(json_object_get(row, "name"));
+    const char *about = json_string_value(json_object_get(row, "about"));
+    if (name && about && strcmp(name, s->error) == 0) return about;
+  }
+  return s->error;
 }
 
 status values_parse(const char *flag, const char *text, struct values *values)

@@ -59,6 +59,7 @@ struct study {
   struct study_file *file;    /* its content; NULL: there is none */
   json_t *scene;              /* as `show` tells it */
   const char *error;          /* the metric that is the error against the truth */
+  json_t *metrics;            /* as `list metrics` tells them */
   double spacing, dt, t_end;  /* the scene's own */
   int is_projection;          /* no time passes: dt and t_end do nothing */
   struct sweep_plan plan;     /* for precision */
@@ -72,6 +73,9 @@ struct study {
  * no solver that can run it; ERR_IO. */
 status study_open(struct study *study, const struct study_request *ask);
 void study_close(struct study *study);
+
+/* What study->error is, in words; which truth it is against, too. */
+const char *study_error_about(const struct study *study);
 
 /* The time step of a factor at a spacing, so that t_end is a whole number of steps [s]; 0 for
  * projections. */

@@ -1,9 +1,11 @@
 /* `sphbench sweep`: every run of a plan, once. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "arguments.h"
 #include "emit.h"
+#include "estimate.h"
 #include "figure.h"
 #include "front.h"
 #include "manifest.h"
@@ -69,27 +71,38 @@ static status parse(struct request *r, int argc, char **argv)
            : user_error("sweep needs a plan; 'sphbench list plans' lists them");
 }
 
-static void show_plan(const struct queue *queue)
+static void show_run(const struct run *run, const struct estimate *e)
 {
-  double known = 0;
-  int todo = 0, unknown = 0;
-  for (int k = 0; k < queue->n; k++) {
-    const struct run *run = &queue->run[k];
-    const double seconds = queue_known_time(queue, run);
-    printf("%s  %s with %s (%s)%s%s", run->id, run->argv[1], run->argv[3], run->name.text,
-           *run->what ? " " : "", run->what);
-    if (run->finished)
-      printf(": %s already\n", outcome_words[run->outcome]);
-    else if (seconds > 0)
-      printf(": took %.1f s before\n", seconds);
-    else
-      printf("\n");
-    todo += !run->finished;
-    unknown += !run->finished && !(seconds > 0);
-    known += run->finished ? 0 : seconds;
+  printf("%s  %s with %s (%s)%s%s: ", run->id, run->argv[1], run->argv[3], run->name.text,
+         *run->what ? " " : "", run->what);
+  if (run->finished)
+    printf("%s already\n", outcome_words[run->outcome]);
+  else if (e->refusal)
+    printf("%s\n", e->refusal);
+  else
+    printf("%s %.2g s, about %.3g MiB\n", e->measured ? "took" : "about", e->seconds, e->mebibytes);
+}
+
+static status show_plan(const struct queue *queue)
+{
+  struct estimate *all = calloc((size_t)queue->n + 1, sizeof *all);
+  double seconds = 0, most = 0;
+  int todo = 0;
+  if (!all) return status_set(ERR_MEMORY, "out of memory");
+  const status result = estimates_make(queue, all);
+  for (int k = 0; k < queue->n && result == OK; k++) {
+    show_run(&queue->run[k], &all[k]);
+    todo += !queue->run[k].finished;
+    seconds += all[k].seconds;
+    most = fmax(most, all[k].mebibytes);
+    free(all[k].refusal);
   }
-  printf("%d runs, %d to do; %.0f s of computing for those known, %d were never run\n", queue->n,
-         todo, known, unknown);
+  free(all);
+  if (result == OK)
+    printf("%d runs, %d to do: about %.2g s on one core, %.2g s on %d; at most about %.3g MiB at "
+           "once\n",
+           queue->n, todo, seconds, seconds / queue->jobs, queue->jobs, most * queue->jobs);
+  return result;
 }
 
 /* Counts of how the runs ended; ERR_RUN where one crashed, since that is a fault of the program. A
@@ -113,6 +126,9 @@ static status conclude(const struct queue *queue, int quiet, int whole)
   if (count[OUTCOME_CRASHED])
     return status_set(ERR_RUN, "%d of %d runs crashed; the journal and the logs say how",
                       count[OUTCOME_CRASHED], ended);
+  if (count[OUTCOME_INTERRUPTED])
+    return status_set(ERR_RUN, "%d of %d runs were stopped from outside; start the sweep again",
+                      count[OUTCOME_INTERRUPTED], ended);
   return OK;
 }
 
@@ -157,10 +173,7 @@ static status work(const struct request *r, const struct plan *plan, struct queu
   names_free(&solvers);
   if (result != OK) return result;
   for (int k = 0; k < queue->n && r->fresh; k++) queue->run[k].finished = 0;
-  if (r->dry_run) {
-    show_plan(queue);
-    return OK;
-  }
+  if (r->dry_run) return show_plan(queue);
   if (r->engine) return emit(r, queue);
   TRY(queue_work(queue));
   TRY(take_times(r, plan, queue));

@@ -134,7 +134,7 @@ static int said_in_json(const char *path, char **reason)
     *reason = text_make("%s at t = %.4g s", why ? why : "diverged", at);
   }
   json_decref(facts);
-  return is_diverged ? OUTCOME_DIVERGED : is_interrupted ? NUM_OUTCOMES : OUTCOME_CRASHED;
+  return is_diverged ? OUTCOME_DIVERGED : is_interrupted ? OUTCOME_INTERRUPTED : OUTCOME_CRASHED;
 }
 
 /* Did it run into the limit on memory? It says so itself, or it was full when a signal ended it,
@@ -146,7 +146,12 @@ static int was_full(const struct queue *queue, int exit_code, const char *said, 
   return exit_code == 3 && said && (strstr(said, "no memory") || strstr(said, "out of memory"));
 }
 
-/* NUM_OUTCOMES: none, the run was stopped and is to be run again. */
+/* By signals that no run sends itself. */
+static int is_killed(int exit_code)
+{
+  return exit_code == 128 + SIGKILL || exit_code == 128 + SIGTERM || exit_code == 128 + SIGINT;
+}
+
 static int classify(struct work *w, const struct run *run, int exit_code, long peak, char **reason)
 {
   const struct path json = run_file(w->queue->results, run->id, "json");
@@ -159,12 +164,12 @@ static int classify(struct work *w, const struct run *run, int exit_code, long p
   }
   if (exit_code == 3) outcome = said_in_json(json.text, reason);
   if (outcome != OUTCOME_CRASHED) return outcome;
-  if (w->stopped > 0) return NUM_OUTCOMES;
+  if (w->stopped > 0) return OUTCOME_INTERRUPTED;
   *reason = run_last_words(log.text);
   if (exit_code == 2) {
     if (!*reason || strncmp(*reason, "cannot write", 12) != 0) return OUTCOME_UNABLE;
     fail(w, status_set(ERR_IO, "%s", *reason)); /* a full disk says nothing about the solver */
-    return NUM_OUTCOMES;
+    return OUTCOME_INTERRUPTED;
   }
   if (exit_code == 77) return OUTCOME_UNABLE;
   if (was_full(w->queue, exit_code, *reason, peak)) {
@@ -173,15 +178,11 @@ static int classify(struct work *w, const struct run *run, int exit_code, long p
     return OUTCOME_OOM;
   }
   *reason = crash_reason(exit_code, *reason);
-  return OUTCOME_CRASHED;
+  return is_killed(exit_code) ? OUTCOME_INTERRUPTED : OUTCOME_CRASHED;
 }
 
-/* Killed from outside, or skipped on a machine that lacks something: may go better next time. */
-static int is_final(int exit_code)
-{
-  return exit_code != 77 && exit_code != 128 + SIGKILL && exit_code != 128 + SIGTERM &&
-         exit_code != 128 + SIGINT && exit_code != 127;
-}
+/* Skipped on a machine that lacks something: may go better next time. */
+static int is_final(int exit_code) { return exit_code != 77 && exit_code != 127; }
 
 static void tell(struct work *w, const struct run *run)
 {
@@ -206,11 +207,12 @@ static void take_end(struct work *w, struct child *child, int state, long peak)
   const int too_long = child->stopped > 0 && exit_code != 0;
   if (too_long) run->reason = text_make("takes longer than %g s", w->queue->limit);
   const int outcome = too_long ? OUTCOME_TIMEOUT : classify(w, run, exit_code, peak, &run->reason);
-  if (outcome == NUM_OUTCOMES) return;
   run->outcome = (enum outcome)outcome;
-  run->finished = 1;
-  w->queue->done++;
-  tell(w, run);
+  if (outcome == OUTCOME_INTERRUPTED && !run->reason)
+    run->reason = strdup(w->stopped > 0 ? "stopped with the sweep" : "was stopped");
+  run->finished = w->stopped > 0 ? outcome != OUTCOME_INTERRUPTED : 1;
+  w->queue->done += run->finished;
+  if (run->finished) tell(w, run);
   struct journal_entry entry = {.outcome = run->outcome,
                                 .exit_code = exit_code,
                                 .seconds = run->seconds,

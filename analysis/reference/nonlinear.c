@@ -66,7 +66,7 @@ static enum reference_status solve(const struct reference_equations *e, double *
   }
   close_kinsol(&k);
   *iterations = (int)steps;
-  if (flag >= 0) return REFERENCE_OK;
+  if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return REFERENCE_OK;
   return ref_fail(REFERENCE_NOT_CONVERGED, "KINSOL (%s) returned %d after %ld iterations", name,
                   flag, steps);
 }

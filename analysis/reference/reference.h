@@ -325,6 +325,22 @@ struct reference_motion {
 };
 struct reference_motion reference_two_particle_motion(const struct reference_orbit *o, double t);
 
+/* ODE. n particles of mass m with the density rho_i = m sum_j W(r_ij), itself included, and
+ * p_i = rho0_i c^2/gamma ((rho_i/rho0_i)^gamma - 1) of either sign, free of other forces:
+ *   x_i'' = -m sum_j (p_i/rho_i^2 + p_j/rho_j^2) grad_i W_ij
+ * x[n][dim] and v[n][dim] at 0 are replaced by those at t; lengths and speeds of order 1. Double
+ * loops; CVODE at 1e-12 and 1e-14, whose largest difference in x or v is *error. Conserves the
+ * energy sum m (v^2/2 + u(rho)), du/drho = p/rho^2. Fails: bad arguments; CVODE; no memory. */
+struct reference_particles {
+  int n, dim;
+  double m, c, gamma, support;
+  const double *rho0;                                /* [n] */
+  void (*kernel)(double r, double w[2], void *user); /* W and W' at 0 <= r < support */
+  void *user;
+};
+enum reference_status reference_particle_flow(const struct reference_particles *p, double t,
+                                              double *x, double *v, double *error);
+
 /* ---- Referees: systems solved by other people's programs (algebra.c, nonlinear.c) ---------------
  */
 

@@ -130,6 +130,13 @@ static void put_totals(struct h5 *h, hid_t run, const struct run_facts *facts)
                    counts[i].value);
   h5_put_number(h, run, (struct h5_label){"iterations_mean", "1", "solver iterations per step"},
                 facts->iterations.mean);
+  for (int k = 0; k < facts->iterations.num_solves; k++) {
+    const struct fact_solve *solve = &facts->iterations.solve[k];
+    char name[64];
+    snprintf(name, sizeof name, "iterations_%s_mean", solve->name);
+    h5_put_number(h, run, (struct h5_label){name, "1", "iterations of these solves per step"},
+                  solve->mean);
+  }
   h5_put_number(h, run,
                 (struct h5_label){"residual_last", "1", "relative residual of the last solve"},
                 facts->residual_last);

@@ -136,6 +136,19 @@ static json_t *provenance(const struct provenance *p)
 }
 
 /* The keys in the order in which a person wants to read them. */
+static json_t *solves(const struct run_facts *f)
+{
+  json_t *object = json_object();
+  for (int k = 0; k < f->iterations.num_solves; k++) {
+    const struct fact_solve *s = &f->iterations.solve[k];
+    json_object_set_new(object, s->name,
+                        json_pack("{s:o, s:I, s:I, s:I, s:I}", "mean", number(s->mean), "max",
+                                  (json_int_t)s->max, "total", (json_int_t)s->total, "solves",
+                                  (json_int_t)s->solves, "capped", (json_int_t)s->capped));
+  }
+  return object;
+}
+
 static json_t *whole(const struct run_facts *f)
 {
   json_t *object =
@@ -153,9 +166,9 @@ static json_t *whole(const struct run_facts *f)
   json_object_set_new(object, "speed_max", number(f->speed_max));
   json_object_set_new(object, "energy_growth", number(f->energy_growth));
   json_object_set_new(object, "iterations",
-                      json_pack("{s:o, s:I, s:I}", "mean", number(f->iterations.mean), "max",
+                      json_pack("{s:o, s:I, s:I, s:o}", "mean", number(f->iterations.mean), "max",
                                 (json_int_t)f->iterations.max, "total",
-                                (json_int_t)f->iterations.total));
+                                (json_int_t)f->iterations.total, "solves", solves(f)));
   json_object_set_new(object, "residual", json_pack("{s:o}", "last", number(f->residual_last)));
   json_object_set_new(object, "pairs",
                       json_pack("{s:o}", "visited",

@@ -58,6 +58,8 @@ struct provenance {
   const char *const *argv; /* [argc] */
 };
 
+enum { MOST_SOLVES = 4 };
+
 struct run_facts {
   const char *scene, *solver, *variant;
   int dim;
@@ -77,6 +79,13 @@ struct run_facts {
   struct {
     double mean; /* per step */
     long max, total;
+    struct fact_solve { /* the same of each kind of solve: "pressure", "viscosity", ... */
+      const char *name;
+      double mean;         /* per step */
+      long max, total;     /* max: in a solve */
+      long solves, capped; /* capped: they hit their limit */
+    } solve[MOST_SOLVES];
+    int num_solves;
   } iterations;
   double pairs_visited;       /* neighbour pairs, by all sums over them; 0: not counted */
   double residual_last;       /* relative; NaN where nothing was iterated */

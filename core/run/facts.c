@@ -73,13 +73,20 @@ void facts_update(struct facts *f, const struct plan *plan, const struct run *ru
 
 static void end_iterations(struct facts *f, const struct run *run, const struct record *r)
 {
+  const double steps = run->step > 0 ? (double)run->step : 1;
   long total = 0, most = 0;
-  for (int k = 0; k < run->num_iterations; k++) total += run->iterations[k].total;
+  for (int k = 0; k < run->num_iterations; k++) {
+    const struct iterations *it = &run->iterations[k];
+    total += it->total;
+    f->run.iterations.solve[k] = (struct fact_solve){
+      it->what, (double)it->total / steps, it->most, it->total, it->solves, it->capped};
+  }
+  f->run.iterations.num_solves = run->num_iterations;
   for (long k = 0; k < r->steps; k++)
     if (r->step[1][k] > (double)most) most = (long)r->step[1][k];
   f->run.iterations.total = total;
   f->run.iterations.max = most;
-  f->run.iterations.mean = run->step > 0 ? (double)total / (double)run->step : 0;
+  f->run.iterations.mean = (double)total / steps;
   if (run->num_iterations > 0) f->run.residual_last = run->step_residual;
 }
 

@@ -135,12 +135,13 @@ static void walk_clock(struct shelf *s, struct run *run)
   if (!s->saving) run->first_step = run->step;
 }
 
-/* A solver that has virtual particles keeps their positions under this name (solver.h). */
-static status check_virtual(struct shelf *s, struct run *run, long virtual)
+/* A solver that has virtual particles keeps their positions under this name (solver.h); where they
+ * are the particles themselves there are as many. */
+static status check_virtual(struct shelf *s, struct run *run, long virtual, long particles)
 {
   const struct store_field *f = store_find(&run->store, "X");
   const int has = f && f->row.where == VIRTUAL;
-  const long rows = has && virtual > 0 ? shelf_rows(s, "fields/X") : 0;
+  const long rows = has && virtual > 0 ? shelf_rows(s, "fields/X") : virtual ? particles : 0;
   if (virtual == rows) return s->failed;
   return shelf_refuse(s, "it has %ld virtual particles and %ld positions of them", virtual, rows);
 }
@@ -161,7 +162,7 @@ static status walk_counts(struct shelf *s, struct run *run)
   if (shelf_rows(s, "fields/x") != n + walls)
     return shelf_refuse(s, "it has %ld positions of %ld particles", shelf_rows(s, "fields/x"),
                         n + walls);
-  TRY(check_virtual(s, run, virtual));
+  TRY(check_virtual(s, run, virtual, n + walls));
   s->failed = n > n_here ? store_insert_fluid(&run->store, (int)(n - n_here)) : OK;
   run->view->p.n = (int)n;
   run->view->p.n_all = (int)(n + walls);
@@ -237,14 +238,16 @@ static status check_clock(struct shelf *s, const struct run *run)
   return s->failed;
 }
 
-/* Also what a solver put in place of "auto" lies within the range of its parameter. */
+/* Also what a solver put in place of "auto" lies within the range of its parameter; one that has no
+ * range is for the solver to report, not for a user to set. */
 static status check_params(struct shelf *s, struct run *run)
 {
   for (int k = 0; k < run->solver->num_params; k++) {
     const struct param *p = &run->solver->params[k];
     const double value = (double)*(const real *)((const char *)run->state + p->offset);
     const double least = fmin(p->low, p->initial), most = fmax(p->high, p->initial);
-    if (!(value >= (double)(real)least && value <= (double)(real)most))
+    const int reported = p->low == p->high;
+    if (reported ? !(value >= 0) : !(value >= (double)(real)least && value <= (double)(real)most))
       return shelf_refuse(s, "its solver/%s is %g, allowed is %g to %g", p->name, value, least,
                           most);
   }

@@ -1,7 +1,8 @@
 /* visits.h - how many neighbour pairs the sums of a run visit: a cost that does not depend on the
  * machine. Each walk along a row of a pair list counts the row's pairs, whether it evaluates the
  * kernel or reads kept coefficients; a pair is counted from both its sides. Building lists is not
- * counted, nor is work that walks no pair list (grids, say). */
+ * counted, nor is work that walks no list; of a grid's equations each row counts the cells beside.
+ */
 #ifndef VISITS_H
 #define VISITS_H
 #include "../neighbours/neighbours.h"

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../base/memory.h"
+#include "../sph/lattice.h"
 #include "run.h"
 
 /* The walls alone, on the host, in cell order. */
@@ -47,7 +48,19 @@ static void walls_drop(struct walls *w)
   pair_list_free(&w->list);
 }
 
-/* Akinci et al. 2012, Eq. (4)   m_b = rho0 V_b,   V_b = 1 / sum_k W_bk over the walls */
+/* A factor gamma on the volumes of a single layer, as in the tutorial of Koschier, Bender,
+ * Solenthaler & Teschner 2019: such that a lattice at dx from a flat wall has the density rho0.
+ *   gamma = L_0 (L_1 + L_2 + ..) / (L_1 (L_0 + 2 L_1 + 2 L_2 + ..)),   L_k = sum of W over layer k
+ */
+static double share_of_layer(const struct kernel *kernel, double dx)
+{
+  const double own = lattice_layer(kernel, dx, 0), beside = lattice_layer(kernel, dx, 1);
+  double beyond = 0;
+  for (int k = 1; k * dx < (double)kernel->R; k++) beyond += lattice_layer(kernel, dx, k);
+  return beside > 0 ? own * beyond / (beside * (own + 2 * beyond)) : 1;
+}
+
+/* Akinci et al. 2012, Eq. (4)   m_b = rho0 gamma V_b,   V_b = 1 / sum_k W_bk over the walls */
 static real weight_of(const struct walls *w, double rho0, int b)
 {
   lanes number = NO_LANES;
@@ -74,9 +87,10 @@ static status fill(const struct run *run, struct walls *w)
   const int n = s->n;
   real *mass = malloc(sizeof(real) * ((size_t)w->n + 1));
   if (!mass) return status_set(ERR_MEMORY, "no memory for the walls");
+  const double gamma = share_of_layer(&run->view->nb.kernel, s->common.spacing);
   for (int b = 0; b < w->n; b++) {
     const int wall = w->order[b];
-    mass[wall] = weight_of(w, s->common.rho0, b);
+    mass[wall] = weight_of(w, gamma * s->common.rho0, b);
     if (is_zero(s->wall_n[wall])) s->wall_n[wall] = normal_of(w, b);
   }
   const struct particles p = run->view->p;

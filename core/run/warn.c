@@ -76,13 +76,13 @@ static void check_courant(const struct run *run, double dt, double speed, struct
 {
   const struct scene *s = &run->scene;
   const double g = sqrt((double)inner(s->gravity, s->gravity));
-  const double half = s->common.support * s->common.spacing / 2;
+  const double R = s->common.support * s->common.spacing;
   const double fastest = fmax(speed, g * dt), way = fastest * dt;
-  if (way > half)
+  if (way > R)
     warn(w,
          "dt = %g s is far too long: at %.3g m/s, which the energy allows, a particle crosses %.3g "
-         "spacings in a step, more than half a support, and %.2g s are usual",
-         run->dt, fastest, way / s->common.spacing, 0.4 * half / fmax(speed, sqrt(0.4 * half * g)));
+         "spacings in a step, more than a support, and %.2g s are usual",
+         run->dt, fastest, way / s->common.spacing, 0.2 * R / fmax(speed, sqrt(0.2 * R * g)));
 }
 
 static double most_viscous(const struct scene *s)

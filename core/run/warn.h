@@ -14,8 +14,8 @@ struct warnings {
 };
 
 /* What is known of a run that has not started to step:
- *   a particle crosses more than R/2 in a step, at the largest speed that the energy of the start
- *     allows (Courant number 1; 0.4 is usual), or by gravity alone;
+ *   a particle crosses more than R in a step, at the largest speed that the energy of the start
+ *     allows (0.2 R is usual), or by gravity alone;
  *   explicit viscosity beyond 2/(nu V L), L of lattice_most_friction;
  *   surface tension beyond sqrt(rho0 dx^3/(2 pi sigma)), Brackbill, Kothe & Zemach 1992,
  *     doi:10.1016/0021-9991(92)90240-Y;

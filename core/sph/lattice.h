@@ -19,6 +19,17 @@ static inline double lattice_spread(const struct kernel *kernel, double dx)
   return spread;
 }
 
+/* Sum of W over the lattice's row (2-D) or plane (3-D) at k dx from a point of it [1/m^d] */
+static inline double lattice_layer(const struct kernel *kernel, double dx, int k)
+{
+  const int reach = (int)ceil((double)kernel->R / dx), deep = DIM == 3 ? reach : 0;
+  double sum = 0;
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -deep; b <= deep; b++)
+      sum += (double)kernel_W(kernel, (real)(dx * sqrt((double)(a * a + b * b + k * k))), DIM);
+  return sum;
+}
+
 /* One mode exp(i k.x), k = angle/dx [DIM], of the pressure operator of DFSPH and PBF,
  *   A p_i = sum_j (a_i - a_j).grad W_ij,   a_i = sum_j (p_i + p_j) grad W_ij:
  * its eigenvalue over A's diagonal, |sum_j sin(k.x_ij) grad W_ij|^2 / sum_j |grad W_ij|^2. */

@@ -2,6 +2,7 @@
 import json
 import subprocess
 import sys
+import time
 
 import cli_case
 
@@ -31,9 +32,10 @@ class Case(cli_case.Case):
         (self.dir / "tiny.yaml").write_text(PLAN)
 
     def journal(self, results="r"):
-        """The lines of the journal and of its parts."""
-        return [json.loads(line) for path in sorted((self.dir / results).glob("journal*.jsonl"))
-                for line in path.read_text().splitlines()]
+        """The lines of the journal and of its parts, of runs that came to an end."""
+        lines = [json.loads(line) for path in sorted((self.dir / results).glob("journal*.jsonl"))
+                 for line in path.read_text().splitlines()]
+        return [line for line in lines if line["status"] != "interrupted"]
 
     def parts(self, results="r"):
         return sorted((self.dir / results).glob("journal-*.part.jsonl"))
@@ -45,6 +47,12 @@ class Case(cli_case.Case):
     def task(self, number, *words, **more):
         return self.call("sweep", "--manifest", "job/manifest.json", "--task", number, "--quiet",
                          *words, **more)
+
+    def wait_until(self, is_there):
+        until = time.monotonic() + cli_case.LONGEST
+        while not is_there():
+            self.assertLess(time.monotonic(), until, "waited in vain")
+            time.sleep(0.01)
 
     def gathered(self):
         """After the batch: a plain sweep finds all finished, and changes no file of a run."""

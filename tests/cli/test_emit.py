@@ -60,8 +60,7 @@ class Tasks(sweep_case.Case):
         self.call("sweep", "tiny.yaml", "--results", "r", "--quiet")
         self.emit("slurm", "--fresh")
         child = self.start("sweep", "--manifest", "job/manifest.json", "--task", "0", "--quiet")
-        while len(self.journal()) < sweep_case.RUNS + 2:
-            time.sleep(0.01)
+        self.wait_until(lambda: len(self.journal()) >= sweep_case.RUNS + 2)
         child.send_signal(signal.SIGKILL)
         child.wait()
         done = len(self.journal()) - sweep_case.RUNS
@@ -89,8 +88,8 @@ class Tasks(sweep_case.Case):
         self.emit("slurm", "--batch", "8", "--timeout", 50)
         child = self.start("sweep", "--manifest", "job/manifest.json", "--task", "1", "--quiet",
                            stderr=subprocess.DEVNULL)
-        while not self.parts():
-            time.sleep(0.01)
+        self.addCleanup(lambda: (child.kill(), child.wait()))
+        self.wait_until(self.parts)
         self.one_sentence(self.task(1, code=2)[1], "another sphbench", "part")
         _, said = self.call("sweep", "tiny.yaml", "--results", "r", code=2)
         self.one_sentence(said, "another sphbench is running into 'r'")

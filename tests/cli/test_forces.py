@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Viscosity, XSPH and surface tension are neither allocated nor computed where a scene asks for
 none of them, and each brings its own only."""
+import json
 import re
 import subprocess
 
@@ -71,6 +72,20 @@ class Forces(cli_case.Case):
             _, err = self.call("run", "rotating-patch", "--solver", "dfsph", "--set", setting,
                                code=2)
             self.assertIn(allowed, err)
+
+
+
+class Solves(cli_case.Case):
+    def test_each_kind_is_told(self):
+        """Iterations on pressure are not those on viscosity; together they are all."""
+        self.call("run", "tank", "--solver", "dfsph", "--set", "viscosity=1", "--spacing", "0.05",
+                  "--t-end", "0.02", "--json", "r.json", "--quiet")
+        told = json.loads((self.dir / "r.json").read_text())["iterations"]
+        solves = told["solves"]
+        self.assertEqual(set(solves), {"density", "divergence", "viscosity"})
+        self.assertEqual(told["total"], sum(kind["total"] for kind in solves.values()))
+        self.assertAlmostEqual(told["mean"], sum(kind["mean"] for kind in solves.values()))
+        self.assertTrue(all(kind["solves"] == 20 for kind in solves.values()), solves)
 
 
 if __name__ == "__main__":

@@ -283,6 +283,18 @@ load 'contents.gp'
 plot for [k = 1:n] file[k] using 1:2 with points lt colour[k] title title[k]
 GP
 
+# --- the index, and what would be run ---
+
+mine 0 mine.png
+index=$dir/results/figures/index.html
+grep -qF 'mine.png' "$index" || fail 'the index has no picture'
+grep -qF '4 of 4 runs have a result' "$index" || fail 'the index has no settings'
+: >"$dir/calls"
+mine 0 '4 runs, 0 to do' --dry-run
+rm -rf "$dir/results"
+mine 0 '4 runs, 4 to do' --dry-run
+[[ ! -e $dir/results/figures ]] || fail '--dry-run draws'
+
 # --- how runs end ---
 
 export SOLVER_BAD

@@ -3,6 +3,7 @@ import json
 import pathlib
 import shutil
 import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
 
@@ -310,6 +311,19 @@ class Gates(cli_case.Case):
         self.edit(lambda b: b["rules"].update(
             trajectory_error={"abs": 1e3, "rel": 0, "why": "only the order is judged here"}))
         self.assertEqual(self.failed(), {"trajectory_error.order"})
+
+    def test_the_list_of_planted_faults(self):
+        """What was found is of the faults that there are, and the page is made from it."""
+        sys.path.insert(0, str(ROOT / "tests" / "mutations"))
+        self.addCleanup(sys.path.pop, 0)
+        import mutate
+        from mutations import FAULTS
+        known = read_json((ROOT / "results" / "mutations.json").read_text())
+        self.assertEqual([row["name"] for row in known["faults"]], [one.name for one in FAULTS])
+        self.assertGreaterEqual(known["caught"], 12)
+        self.assertEqual([row["name"] for row in known["faults"] if not row["caught"]],
+                         [one.name for one in FAULTS if one.blind])
+        self.assertEqual((ROOT / "docs" / "planted-faults.md").read_text(), mutate.page_of(known))
 
     # --- files
 

@@ -173,6 +173,8 @@ class Diverged(Case):
         facts, file = self.results()
         self.assertEqual(facts["status"], "diverged")
         self.assertRegex(facts["reason"], reason)
+        warning, err = err.split("\n", 1)
+        self.assertIn("relaxation 2 is beyond", warning)
         self.one_sentence(err, f"the run diverged at t = {facts['time_end']:.6g} s "
                           f"(step {facts['steps']}): {facts['reason']}")
         self.assertIn("gamma_printed", out)

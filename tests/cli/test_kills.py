@@ -52,7 +52,7 @@ class Kills(cli_case.Case):
         self.plan.write_text(PLAN.format(solvers=", ".join(self.what["solvers"]), sides=sides))
 
     def journal(self, results):
-        """Whole lines; the last may be torn."""
+        """Of the runs that came to an end, by whole lines; the last may be torn."""
         path = self.dir / results / "journal.jsonl"
         lines = path.read_text().split("\n") if path.exists() else []
         entries = []
@@ -61,7 +61,7 @@ class Kills(cli_case.Case):
                 entries.append(json.loads(line))
             except ValueError:
                 continue
-        return entries
+        return [entry for entry in entries if entry["status"] != "interrupted"]
 
     def drive(self):
         return self.start("sweep", self.plan, "--results", "killed", "--quiet", "--jobs", "2",

@@ -84,6 +84,7 @@ class Real(Case):
         a, b = (read_json((self.dir / name).read_text()) for name in ("a.json", "b.json"))
         self.assertEqual(len(a["points"]), 8)
         self.assertEqual(a["error"]["metric"], "pressure_error")
+        self.assertIn("pressure against the scene's truth", a["error"]["about"])
         for one, other in zip(a["points"], b["points"]):
             self.assertLessEqual(POINT_KEYS, set(one))
             self.assertTrue(one["valid"], one["reason"])
@@ -118,6 +119,17 @@ class Real(Case):
         least = b["particles"] * b["iterations"]["total"] * 2
         self.assertGreater(b["pairs"]["visited"], 4 * least)
         self.assertLess(b["pairs"]["visited"], 21 * 20 * b["particles"] * b["steps"])
+
+    def test_equations_on_a_grid_are_counted(self):
+        def visited(iterations):
+            out, _ = self.call("run", "elliptical-drop", "--solver", "flip", "--spacing", "0.2",
+                               "--t-end", "0.0002", "--count-pairs", "--quiet", "--json", "-",
+                               "--set", f"fixed_iterations={iterations}")
+            return read_json(out)["pairs"]["visited"]
+        # a row of the equations has the four cells beside it, in every iteration
+        one, two, three = (visited(n) for n in (5, 10, 15))
+        self.assertGreater(two - one, 0)
+        self.assertLess(abs((three - two) / (two - one) - 1), 0.01)
 
     def test_other_kinds_of_error(self):
         for kind in ("algebraic", "temporal"):

@@ -146,8 +146,11 @@ class Slurm(sweep_case.Case):
         self.wait_for(lambda: (self.dir / "r").exists() and len(self.journal()) >= 2, "two runs")
         self.ask("scontrol", "requeue", f"{number}_0")
         self.assertLess(len(self.journal()), sweep_case.RUNS, "the task was too short")
-        self.ask("scontrol", "update", f"JobId={number}_0", "StartTime=now")  # not in two minutes
-        self.wait_for_the_end()
+
+        def ended():
+            self.ask("scontrol", "update", f"JobId={number}", "StartTime=now")  # not in two minutes
+            return self.ask("squeue", "-h") == ""
+        self.wait_for(ended, "the end of the job", 300)
         lines = self.journal()
         self.assertEqual(len(lines), sweep_case.RUNS)
         self.gathered()

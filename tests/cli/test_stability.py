@@ -1,6 +1,7 @@
 """Runs judged, and the largest stable time step, through the command line."""
 import json
 import os
+import subprocess
 import unittest
 
 import numpy
@@ -125,6 +126,16 @@ fluid:
 
 
 class Extreme(cli_case.Case):
+    def test_a_particle_far_away_and_one_nowhere(self):
+        for ending in ("", "-3d"):
+            scene = cli_case.ROOT / f"benchmarks/extreme-far{ending}.yaml"
+            facts, file = self.run_scene(scene, "pbf")
+            self.assertEqual(facts["particles"], 126 if ending else 101)
+            self.assertEqual(numpy.abs(cli_case.frame(file, 0)("position")).max(), 1e30)
+            scene = cli_case.ROOT / f"benchmarks/extreme-nan{ending}.yaml"
+            _, err = self.call("run", scene, "--solver", "pbf", code=2)
+            self.one_sentence(err, "fluid[2].particle", ".nan")
+
     def test_a_table(self):
         folder = self.dir / "plans"
         os.mkdir(folder)
@@ -141,9 +152,16 @@ class Extreme(cli_case.Case):
         self.assertAlmostEqual(good["energy_ratio"], 1, delta=0.01)
         self.assertEqual((bad["status"], bad["finished"]), ("diverged", False))
         self.assertIsNotNone(bad["failed"])
-        self.assertEqual(none["status"], "unable")
+        self.assertEqual(none["status"], "skipped")
         self.assertIn("fluid particle 0 and fluid particle 4", none["reason"])
         self.assertIn("r/stability/extreme.json", self.files())
+        small = self.dir / "small.json"
+        subprocess.run([cli_case.ROOT / "tools/stability-page", "--condense",
+                        self.dir / "r/stability/extreme.json", small], check=True)
+        cases = json.loads(small.read_text())["cases"]
+        states = {case.split()[0]: runs["2d f64"]["pbf"][0] for case, runs in cases.items()}
+        self.assertEqual(states, {"free-fall": "ok", "near": "skipped",
+                                  "compressed": f"diverged ({bad['failed']})"})
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ SHORT = ("--spacing", "0.05", "--t-end", "1e-9", "--quiet")
 
 # solver, what is typed, what the sentence must hold
 SLIPS = (
-    ("dfsph", ("--dt", "0.1", "--t-end", "0.1"), ("dt = 0.1 s", "half a support")),
+    ("dfsph", ("--dt", "0.1", "--t-end", "0.1"), ("dt = 0.1 s", "a support")),
     ("pbf", ("--set", "gravity=2000", "--dt", "0.01"), ("dt = 0.01 s",)),
     ("pbf", ("--set", "viscosity=400", "--set", "viscosity_form=explicit", "--dt", "0.005"),
      ("explicit viscosity", "implicit")),
@@ -34,6 +34,7 @@ SLIPS = (
 )
 # the same a little further from the edge
 FINE = (
+    ("dfsph", ("--dt", "0.03", "--t-end", "0.03")),
     ("pbf", ("--set", "viscosity=400", "--dt", "0.005")),
     ("pbf", ("--set", "viscosity=4", "--set", "viscosity_form=explicit", "--dt", "0.005")),
     ("dfsph", ("--set", "relaxation=0.7")),

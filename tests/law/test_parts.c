@@ -290,7 +290,9 @@ static void walls_follow_their_motion(void **unused)
 
 /* --- Akinci's walls */
 
-/* Of a straight row of spacing dx in 2-D, a flat square layer in 3-D: m_b = rho0 / sum W(k dx). */
+/* Of a straight row of spacing dx in 2-D, a flat square layer in 3-D: m_b = rho0 gamma / sum W(k
+ * dx), with gamma such that a half space of the lattice at dx from it is as dense as the whole
+ * lattice. */
 static void weights_of_walls(void **unused)
 {
   (void)unused;
@@ -303,15 +305,19 @@ static void weights_of_walls(void **unused)
   assert_int_equal(scene_add(&scene, times((real)(10 * DX), point(1, 1)), zero()), OK);
   struct run *run = run_of(some_solver(CAN(WALLS)), &scene, 0);
   const struct kernel k = run->view->nb.kernel;
-  double number = 0;
-  for (int a = -3; a <= 3; a++)
-    for (int b = DIM == 3 ? -3 : 0; b <= (DIM == 3 ? 3 : 0); b++)
-      number += (double)kernel_W(&k, (real)(DX * sqrt((double)(a * a + b * b))), DIM);
+  double layer[7] = {0}, all = 0; /* sums of W over the lattice's layers, k - 3 from a particle */
+  for (int k_of = -3; k_of <= 3; k_of++)
+    for (int a = -3; a <= 3; a++)
+      for (int b = DIM == 3 ? -3 : 0; b <= (DIM == 3 ? 3 : 0); b++)
+        layer[k_of + 3] +=
+          (double)kernel_W(&k, (real)(DX * sqrt((double)(a * a + b * b + k_of * k_of))), DIM);
+  for (int l = 0; l < 7; l++) all += layer[l];
+  const double missing = all - layer[3] - layer[4] - layer[5] - layer[6];
+  const double expected = 1000 / all * missing / layer[4]; /* V_0 fills what is missing */
   real *m = malloc(sizeof(real) * (size_t)run->view->p.n_all);
   memory_to_host(m, run->view->p.m, sizeof(real) * (size_t)run->view->p.n_all);
   int flat = 0;
-  for (int b = 1; b < run->view->p.n_all; b++)
-    flat += fabs((double)m[b] * number / 1000 - 1) < 1e-5;
+  for (int b = 1; b < run->view->p.n_all; b++) flat += fabs((double)m[b] / expected - 1) < 1e-5;
   const int inner_side = 20 - 2 * 2; /* away from the edges */
   assert_true(flat >= (DIM == 2 ? 4 * inner_side : 6 * inner_side * inner_side));
   assert_true((double)m[1] > 1000 * pow(DX, DIM)); /* one layer stands for several */

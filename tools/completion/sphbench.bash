@@ -1,7 +1,7 @@
 # Completion of sphbench for bash: verbs, names and flags, as the command itself lists them.
 _sphbench() {
   local word=$2 before=$3 verb=${COMP_WORDS[1]-} command=${COMP_WORDS[0]}
-  local verbs='run list show sweep compare bless figure precision convergence profile speed report claims doctor'
+  local verbs='run list show sweep frames compare bless figure precision convergence profile speed report claims doctor'
   names() { "$command" list "$1" 2>/dev/null | awk '{print $1}'; }
   offer() { mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word"); }
   if ((COMP_CWORD == 1)); then
@@ -13,14 +13,16 @@ _sphbench() {
     --dim) offer '2 3' && return ;;
     --precision) offer 'float double' && return ;;
     --backend) offer 'openmp cuda' && return ;;
+    --colour) offer 'speed p' && return ;;
     --emit) offer 'slurm parallel' && return ;;
-    -o | --manifest | --json | --junit | --results | --plugin | --restart) return ;; # files
+    -o | --manifest | --film | --json | --junit | --results | --plugin | --restart) return ;; # files
   esac
   if [[ $word == -* ]]; then
     case $verb in
       run | speed) offer "$("$command" "$verb" --help 2>/dev/null | awk '/^  -/ {print $1}')" ;;
       sweep) offer '--results --jobs --timeout --memory --fresh --dry-run --quiet --plugin --emit
         --batch --manifest --task --timed --threads' ;;
+      frames) offer '-o --colour --film --quiet' ;;
       compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
