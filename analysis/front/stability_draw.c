@@ -188,6 +188,22 @@ static void put_legend(const struct stability *s, FILE *contents)
   fprintf(contents, "num_verdicts = %d\n", n);
 }
 
+/* "spacing [m]", with the unit that the first run with facts tells. */
+static void put_label(const struct stability *s, FILE *contents)
+{
+  const char *unit = NULL;
+  json_t *facts = NULL;
+  for (int k = 0; k < s->n && !unit; k++) {
+    json_decref(facts);
+    facts = run_facts_json(&s->queue, s->trial[k].run);
+    unit =
+      json_string_value(json_object_get(json_object_get(facts, "parameter_units"), s->map.key));
+  }
+  const struct path label = path_of(unit ? "%s [%s]" : "%s", s->map.key, unit);
+  put_text(contents, "label_value", 0, label.text);
+  json_decref(facts);
+}
+
 static void put_axis(const struct stability *s, const struct axis *axis, FILE *contents)
 {
   fprintf(contents, "is_log = %d\ndt_low = %.8g; dt_high = %.8g\nvalue_low = %.8g; value_high = ",
@@ -200,7 +216,7 @@ static void put_axis(const struct stability *s, const struct axis *axis, FILE *c
     fprintf(contents, "row_at[%d] = %.8g\n", row + 1, value_of(s, axis, row));
     put_text(contents, "row_label", row + 1, s->map.value[row]);
   }
-  put_text(contents, "label_value", 0, s->map.key);
+  put_label(s, contents);
 }
 
 static status write_map(const struct stability *s, FILE *contents)
