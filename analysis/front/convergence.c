@@ -7,6 +7,7 @@
 #include "arguments.h"
 #include "figure.h"
 #include "front.h"
+#include "iterations.h"
 #include "study_file.h"
 
 enum { LEAST_LEVELS = 4 };
@@ -48,7 +49,7 @@ static status take_numbers(struct typed *t, struct convergence *c)
   t->num_jobs = processors();
   c->over_dt = t->over && strcmp(t->over, "dt") == 0;
   if (t->over && !c->over_dt && strcmp(t->over, "spacing") != 0)
-    return user_error("--over: '%s' found, allowed is spacing or dt", t->over);
+    return user_error("--over: '%s' found, allowed is spacing, dt or iterations", t->over);
   TRY(argument_whole("--seeds", t->seeds, 0, 1000, &c->seeds));
   TRY(argument_whole("--jobs", t->jobs, 1, 256, &t->num_jobs));
   TRY(value_parse("--jitter", t->jitter, &c->jitter));
@@ -163,7 +164,8 @@ static status read_trial(struct convergence *c, struct trial *t)
     json_t *unused;
     t->reason = study_failure(&c->queue, t->reference, &unused);
     json_decref(unused);
-    if (!t->reason) result = study_distance(&c->study, &c->queue, t->run, t->reference, &t->error);
+    if (!t->reason)
+      result = study_distance(&c->queue, t->run, t->reference, study_array(&c->study), &t->error);
   } else if (!t->reason) {
     t->error = metric_of(c, facts);
   }
@@ -315,10 +317,19 @@ static void release(struct convergence *c)
   queue_close(&c->queue);
 }
 
+/* Those curves have flags of their own (iterations.c). */
+static int is_over_iterations(int argc, char **argv)
+{
+  for (int k = 2; k + 1 < argc; k++)
+    if (strcmp(argv[k], "--over") == 0 && strcmp(argv[k + 1], "iterations") == 0) return 1;
+  return 0;
+}
+
 status verb_convergence(int argc, char **argv)
 {
   static struct convergence c; /* large, and there is one */
   struct typed t;
+  if (is_over_iterations(argc, argv)) return verb_iterations(argc, argv);
   c = (struct convergence){.queue = {.journal = {.file = -1}}};
   TRY(parse(&t, argc, argv));
   TRY(take_numbers(&t, &c));

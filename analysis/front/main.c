@@ -44,7 +44,7 @@ static const char usage[] =
   "         [--set KEY=VALUE]... [--dim 2|3] [--precision float|double] [--backend B]\n"
   "         [--repeat N] [--threads N] [--timeout S] [--budget S] [--jobs N] [--fresh]\n"
   "         [--results DIR] [--json FILE] [--quiet]\n"
-  "  convergence SCENE         observed orders, with intervals\n"
+  "  convergence SCENE         observed orders, with intervals; curves over iterations\n"
   "         [--over spacing|dt] [--seeds N] [--jitter DX] and most flags of precision\n"
   "  profile FILE...           performance and data profiles over precision.json files\n"
   "         [-o DIR] [--json FILE] [--quiet]\n"

@@ -178,7 +178,8 @@ static char *check_reference(const struct precision *p, const struct point *poin
 
 static status read_distance(struct precision *p, struct point *point)
 {
-  return study_distance(&p->study, &p->queue, point->run, point->reference, &point->error);
+  return study_distance(&p->queue, point->run, point->reference, study_array(&p->study),
+                        &point->error);
 }
 
 /* Spatial only if half the time step hardly changes it; else it is what it is, the total. */

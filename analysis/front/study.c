@@ -118,6 +118,7 @@ static status learn_scene(struct study *s, const struct path *executable)
   s->dt = parameter_default(s->scene, "dt");
   s->t_end = parameter_default(s->scene, "t_end");
   s->is_projection = has_name(json_object_get(s->scene, "asks"), "PROJECT");
+  if (s->ask.needs_no_truth) return OK;
   if (s->error) return check_error(s);
   return user_error("%s: the scene '%s' has no known truth to measure an error against",
                     s->ask.verb, s->ask.scene);
@@ -254,7 +255,10 @@ static struct run_request request_of(const struct study *s, const struct knobs *
   if (k->seed > 0) r.seed = put_number(w->seed, (double)k->seed);
   put_own_sets(s, w);
   if (k->jitter > 0) put_set(w, "jitter", k->jitter);
-  if (k->factor != 1) put_effort(w, m, k->factor);
+  if (k->iterations > 0)
+    put_set(w, "fixed_iterations", k->iterations);
+  else if (k->factor != 1)
+    put_effort(w, m, k->factor);
   r.set = w->set;
   return r;
 }

@@ -41,6 +41,7 @@ struct knobs {
   double factor;      /* on the tolerances; 0: solved as far as it goes (1e-10) */
   double jitter;      /* [dx]; 0: the scene's own */
   long seed;          /* 0: the scene's own */
+  int iterations;     /* so many exactly; 0: as the tolerances say */
 };
 
 struct study_request {
@@ -48,7 +49,7 @@ struct study_request {
   const char *solvers; /* "A,B"; NULL: all */
   const char *error;   /* a metric in place of the scene's main one */
   const char *dim, *precision, *backend;
-  int quick;
+  int quick, needs_no_truth;
   char *set[MOST_SETS];
   int num_sets;
 };
@@ -100,10 +101,13 @@ double fact_number(const json_t *facts, const char *keys);
 char *study_failure(const struct queue *queue, int run, json_t **facts);
 
 /* Relative distance of two runs of the same particles at their end, by label: |a - b| / |b - start|
- * over positions (the nearest images, where the domain is periodic); of a projection over
- * velocities. ERR_IO. */
-status study_distance(const struct study *study, const struct queue *queue, int run, int other,
+ * over an array of the result file, "position" (the nearest images, where the domain is periodic),
+ * "velocity" or "pressure". ERR_IO. */
+status study_distance(const struct queue *queue, int run, int other, const char *array,
                       double *distance);
+
+/* The array in which the scene moves something: of a projection the velocity. */
+const char *study_array(const struct study *study);
 
 /* "1,2,3" as numbers > 0; what was there is kept where text is NULL. ERR_USER with the flag. */
 status values_parse(const char *flag, const char *text, struct values *values);

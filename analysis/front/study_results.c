@@ -101,16 +101,20 @@ static void read_period(const struct queue *queue, int run, double period[3])
   json_decref(facts);
 }
 
-status study_distance(const struct study *study, const struct queue *queue, int run, int other,
+const char *study_array(const struct study *study)
+{
+  return study->is_projection ? "velocity" : "position";
+}
+
+status study_distance(const struct queue *queue, int run, int other, const char *array,
                       double *distance)
 {
-  const char *name = study->is_projection ? "velocity" : "position";
   struct ends a, b = {.time = 0};
   double period[3] = {0, 0, 0};
-  if (!study->is_projection) read_period(queue, other, period);
+  if (strcmp(array, "position") == 0) read_period(queue, other, period);
   *distance = (double)NAN;
-  status result = read_ends(queue, run, name, &a);
-  if (result == OK) result = read_ends(queue, other, name, &b);
+  status result = read_ends(queue, run, array, &a);
+  if (result == OK) result = read_ends(queue, other, array, &b);
   if (result == OK) result = compare(&a, &b, period, distance);
   ends_free(&a);
   ends_free(&b);

@@ -14,6 +14,7 @@ _sphbench() {
     --precision) offer 'float double' && return ;;
     --backend) offer 'openmp cuda' && return ;;
     --colour) offer 'speed p' && return ;;
+    --over) offer 'spacing dt iterations' && return ;;
     --emit) offer 'slurm parallel' && return ;;
     -o | --manifest | --film | --json | --junit | --results | --plugin | --restart) return ;; # files
   esac
@@ -26,6 +27,9 @@ _sphbench() {
       compare) offer '--all --bitwise --junit --json' ;;
       bless) offer '--reason' ;;
       figure) offer '--standard --all --results -o --jobs --quiet --plugin' ;;
+      convergence) offer '--over --solvers --results --dim --precision --backend --set --error
+        --spacings --spacing --iterations --dt-factors --t-end --seeds --seed --jitter --jobs
+        --timeout --json --quick --quiet --plugin' ;;
       *) offer '--json --plugin --backend --dim --precision' ;;
     esac
     return
