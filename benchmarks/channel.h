@@ -71,9 +71,9 @@ static inline void channel_measure(struct channel *c, const struct snapshot *now
 {
   c->time = now->time;
   if (now->step < 1) return;
-  MEASURE(out, velocity_error, velocity_error(now, channel_velocity_at, c));
+  measure_velocity(now, channel_velocity_at, c, out);
 }
 
-#define CHANNEL_METRICS(M, word) M(word, velocity_error)
+#define CHANNEL_METRICS(M, word) VELOCITY_ERRORS(M, word)
 #define CHANNEL_ASKS (CAN(PERIODIC) | CAN(WALLS) | CAN(VISCOSITY))
 #endif

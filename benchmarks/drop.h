@@ -144,19 +144,19 @@ static inline void drop_measure(struct drop *drop, const struct snapshot *now,
   if (moved.truth > drop->travel) drop->travel = moved.truth;
   moved.truth = drop->travel;
   MEASURE(out, trajectory_error, squares_ratio(&moved));
-  MEASURE(out, velocity_error, velocity_error(now, affine_velocity_at, motion));
+  measure_velocity(now, affine_velocity_at, motion, out);
   MEASURE(out, axes_error, axes_error(&found, &truth));
   MEASURE(out, energy_error, fabs(found.energy / truth.energy - 1));
   if (motion->rate[0][1] != motion->rate[1][0])
     MEASURE(out, spin_error, fabs(found.spin / truth.spin - 1));
   if (!now->p) return;
   const struct centre c = centre_pressure(now, affine_pressure_at, &pressure);
-  MEASURE(out, pressure_error, pressure_error(now, affine_pressure_at, &pressure, 0));
+  measure_pressure(now, affine_pressure_at, &pressure, 0, out);
   MEASURE(out, centre_pressure_error, squares_over_time(&drop->centre, c.found, c.truth, interval));
 }
 
 /* What drop_measure sets of a motion that does not turn, in word 0 or 1. */
-#define DROP_METRICS(M, word)                                                 \
-  M(word, trajectory_error) | M(word, velocity_error) | M(word, axes_error) | \
-    M(word, energy_error) | M(word, pressure_error) | M(word, centre_pressure_error)
+#define DROP_METRICS(M, word)                                                  \
+  M(word, trajectory_error) | VELOCITY_ERRORS(M, word) | M(word, axes_error) | \
+    M(word, energy_error) | PRESSURE_ERRORS(M, word) | M(word, centre_pressure_error)
 #endif

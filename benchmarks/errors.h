@@ -2,6 +2,7 @@
  * mass; fields are compared at the particles' computed places. */
 #ifndef ERRORS_H
 #define ERRORS_H
+#include <stdlib.h>
 #include "../core/benchmark.h"
 
 /* Sums of the squares of an error and of the truth that it is relative to. */
@@ -40,28 +41,64 @@ static inline void place(const struct snapshot *now, int i, double x[DIM])
   for (int d = 0; d < DIM; d++) x[d] = component(now->x, i, d);
 }
 
-/* Relative L2 error of the velocity. */
-static inline double velocity_error(const struct snapshot *now, vector_field *field,
-                                    const void *truth)
+/* Norms of an error over the particles, relative to the truth's: sum |e| / sum |f|, the root of
+ * sum e^2 / sum f^2, the 99.9 percentile and the largest of |e| over the largest |f| (a single
+ * stray particle decides the last). NaN where the truth is 0 everywhere. */
+struct norms {
+  double l1, l2, p999, most;
+};
+
+static inline int by_size(const void *a, const void *b)
 {
-  struct squares s = {0, 0};
-  for (int i = 0; i < now->n; i++) {
-    double x[DIM], v[DIM] = {0};
-    place(now, i, x);
-    field(truth, x, v);
-    for (int d = 0; d < DIM; d++) squares_add(&s, component(now->v, i, d), v[d], 1);
-  }
-  return squares_ratio(&s);
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
 }
 
-/* Relative L2 error of the pressure [Pa]; floating: of p - <p>, both means over the particles, for
- * fluid without a free surface. NaN without a pressure. */
-static inline double pressure_error(const struct snapshot *now, scalar_field *field,
-                                    const void *truth, int floating)
+/* error [n], is sorted: lengths of the errors; truth [n]: of the truth. */
+static inline struct norms norms_of(double *error, const double *truth, int n)
 {
+  double sum = 0, sum_truth = 0, largest = 0;
   struct squares s = {0, 0};
+  for (int i = 0; i < n; i++) {
+    sum += error[i];
+    sum_truth += truth[i];
+    s.error += error[i] * error[i];
+    s.truth += truth[i] * truth[i];
+    if (truth[i] > largest) largest = truth[i];
+  }
+  struct norms found = {(double)NAN, squares_ratio(&s), (double)NAN, (double)NAN};
+  if (!(largest > 0)) return found;
+  qsort(error, (size_t)n, sizeof *error, by_size);
+  found.l1 = sum / sum_truth;
+  found.p999 = error[(int)(0.999 * (n - 1))] / largest;
+  found.most = error[n - 1] / largest;
+  return found;
+}
+
+/* Lengths of the errors of the velocity and of its truth [m/s]. */
+static inline void velocity_lengths(const struct snapshot *now, vector_field *field,
+                                    const void *truth, double *error, double *size)
+{
+  for (int i = 0; i < now->n; i++) {
+    double x[DIM], v[DIM] = {0}, e2 = 0, v2 = 0;
+    place(now, i, x);
+    field(truth, x, v);
+    for (int d = 0; d < DIM; d++) {
+      const double e = component(now->v, i, d) - v[d];
+      e2 += e * e;
+      v2 += v[d] * v[d];
+    }
+    error[i] = sqrt(e2);
+    size[i] = sqrt(v2);
+  }
+}
+
+/* Of the pressure [Pa]; floating: of p - <p>, both means over the particles, for fluid without a
+ * free surface. */
+static inline void pressure_lengths(const struct snapshot *now, scalar_field *field,
+                                    const void *truth, int floating, double *error, double *size)
+{
   double found = 0, expected = 0, x[DIM];
-  if (!now->p) return (double)NAN;
   for (int i = 0; i < now->n && floating; i++) {
     place(now, i, x);
     found += (double)now->p[i] / now->n;
@@ -69,10 +106,47 @@ static inline double pressure_error(const struct snapshot *now, scalar_field *fi
   }
   for (int i = 0; i < now->n; i++) {
     place(now, i, x);
-    squares_add(&s, (double)now->p[i] - found, field(truth, x) - expected, 1);
+    const double f = field(truth, x) - expected;
+    error[i] = fabs((double)now->p[i] - found - f);
+    size[i] = fabs(f);
   }
-  return squares_ratio(&s);
 }
+
+/* All norms of the velocity's error; nothing without memory for them. */
+static inline void measure_velocity(const struct snapshot *now, vector_field *field,
+                                    const void *truth, struct measures *out)
+{
+  double *lengths = (double *)malloc(2 * sizeof(double) * (size_t)now->n + 1);
+  if (!lengths) return;
+  velocity_lengths(now, field, truth, lengths, lengths + now->n);
+  const struct norms norms = norms_of(lengths, lengths + now->n, now->n);
+  MEASURE(out, velocity_error, norms.l2);
+  MEASURE(out, velocity_error_l1, norms.l1);
+  MEASURE(out, velocity_error_p999, norms.p999);
+  MEASURE(out, velocity_error_max, norms.most);
+  free(lengths);
+}
+#define VELOCITY_ERRORS(M, word)                                                         \
+  (M(word, velocity_error) | M(word, velocity_error_l1) | M(word, velocity_error_p999) | \
+   M(word, velocity_error_max))
+
+/* The same of the pressure's, where the solver has one. */
+static inline void measure_pressure(const struct snapshot *now, scalar_field *field,
+                                    const void *truth, int floating, struct measures *out)
+{
+  double *lengths = now->p ? (double *)malloc(2 * sizeof(double) * (size_t)now->n + 1) : NULL;
+  if (!lengths) return;
+  pressure_lengths(now, field, truth, floating, lengths, lengths + now->n);
+  const struct norms norms = norms_of(lengths, lengths + now->n, now->n);
+  MEASURE(out, pressure_error, norms.l2);
+  MEASURE(out, pressure_error_l1, norms.l1);
+  MEASURE(out, pressure_error_p999, norms.p999);
+  MEASURE(out, pressure_error_max, norms.most);
+  free(lengths);
+}
+#define PRESSURE_ERRORS(M, word)                                                         \
+  (M(word, pressure_error) | M(word, pressure_error_l1) | M(word, pressure_error_p999) | \
+   M(word, pressure_error_max))
 
 /* Means over the support around the origin, weighted by the cubic spline, of the pressure and of
  * its truth [Pa]; both 0, as outside the fluid, where nothing is. */

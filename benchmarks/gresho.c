@@ -93,15 +93,15 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
 {
   const state *s = (const state *)self;
   if (now->step < 1) return;
-  MEASURE(out, velocity_error, velocity_error(now, velocity_at, s));
-  MEASURE(out, pressure_error, pressure_error(now, pressure_at, s, 1));
+  measure_velocity(now, velocity_at, s, out);
+  measure_pressure(now, pressure_at, s, 1, out);
   MEASURE(out, energy_error, kinetic_error(now, 1));
   MEASURE(out, spin_error,
           fabs(spin(now, now->x, now->v) / spin(now, now->x_start, now->v_start) - 1));
 }
 
 #define METRICS(M, word) \
-  M(word, velocity_error) | M(word, pressure_error) | M(word, energy_error) | M(word, spin_error)
+  VELOCITY_ERRORS(M, word) | PRESSURE_ERRORS(M, word) | M(word, energy_error) | M(word, spin_error)
 
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_gresho = {

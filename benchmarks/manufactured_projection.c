@@ -112,13 +112,13 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   const state *s = (const state *)self;
   if (now->step < 1) return;
   const struct change c = velocity_change(s, now);
-  MEASURE(out, pressure_error, pressure_error(now, pressure_at, s, 0));
+  measure_pressure(now, pressure_at, s, 0, out);
   MEASURE(out, velocity_error, squares_ratio(&c.error));
   MEASURE(out, orthogonality_defect, 2 * (c.mixed - c.after) / c.before);
 }
 
 #define METRICS(M, word) \
-  M(word, pressure_error) | M(word, velocity_error) | M(word, orthogonality_defect)
+  PRESSURE_ERRORS(M, word) | M(word, velocity_error) | M(word, orthogonality_defect)
 
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_manufactured_projection = {

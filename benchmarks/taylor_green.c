@@ -81,12 +81,12 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   const double k = 6.283185307179586 / s->vortices.L;
   s->time = now->time;
   if (now->step < 1) return;
-  MEASURE(out, velocity_error, velocity_error(now, velocity_at, s));
-  MEASURE(out, pressure_error, pressure_error(now, pressure_at, s, 1));
+  measure_velocity(now, velocity_at, s, out);
+  measure_pressure(now, pressure_at, s, 1, out);
   MEASURE(out, energy_error, kinetic_error(now, exp(-4 * k * k * s->vortices.nu * now->time)));
 }
 
-#define METRICS(M, word) M(word, velocity_error) | M(word, pressure_error) | M(word, energy_error)
+#define METRICS(M, word) VELOCITY_ERRORS(M, word) | PRESSURE_ERRORS(M, word) | M(word, energy_error)
 
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_taylor_green = {

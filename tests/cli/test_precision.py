@@ -307,7 +307,8 @@ class Played(Case):
         self.refused("precision", "scene", "--set", "xsph", says="KEY=VALUE")
         self.refused("precision", "scene", "--tolerance", "1", says="unknown flag")
         self.refused("precision", "scene", "--timeout", "1,2", says="one number")
-        self.refused("convergence", "scene", "--over", "time", says="allowed is spacing, dt or iterations")
+        self.refused("convergence", "scene", "--over", "time",
+                     says="allowed is spacing, dt or iterations")
         self.refused("convergence", "scene", "--spacings", "0.2,0.1", says="at least 4")
         self.refused("profile", says="FILEs are missing")
         (self.dir / "no.json").write_text("{}")

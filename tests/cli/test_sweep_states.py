@@ -154,7 +154,7 @@ class Progress(cli_case.Case):
 
     def test_sweeps_and_runs(self):
         sweep = "sweep", "p.yaml", "--fresh"
-        run = "run", "rotating-patch", "--solver", "pbf", "--spacing", "0.02", "--t-end", "0.3"
+        run = "run", "rotating-patch", "--solver", "pbf", "--spacing", "0.01", "--t-end", "2"
         for words, label in ((sweep, "runs ["), (run, "[")):
             bar = self.said(*words, tty=True)
             self.assertIn(label, bar)

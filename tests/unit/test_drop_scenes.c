@@ -261,9 +261,29 @@ static void test_planted_errors(void **state)
   }
   out = measured(&s);
   near_to(VALUE(out, velocity_error), 0.2, 1e-9, 1e-5);
+  near_to(VALUE(out, velocity_error_l1), 0.2, 1e-9, 1e-5);
+  near_to(VALUE(out, velocity_error_max), 0.2, 1e-9, 1e-5);
+  assert_true(VALUE(out, velocity_error_p999) <= VALUE(out, velocity_error_max));
+  assert_true(VALUE(out, velocity_error_p999) > 0.9 * 0.2);
   near_to(VALUE(out, energy_error), 0.44, 1e-9, 1e-5);
   near_to(VALUE(out, pressure_error), 0.25, 1e-9, 1e-5);
+  near_to(VALUE(out, pressure_error_l1), 0.25, 1e-9, 1e-5);
+  near_to(VALUE(out, pressure_error_max), 0.25, 1e-9, 1e-5);
   near_to(VALUE(out, centre_pressure_error), 0.25, 1e-9, 1e-5);
+  /* one stray particle: in the mean its part, in the largest all of it, in the percentile nothing
+   */
+  move_exactly(&s, 0.005);
+  double sum = 0, largest = 0;
+  for (int i = 0; i < n; i++) {
+    const double speed = sqrt((double)inner(s.brute.v[i], s.brute.v[i]));
+    sum += speed;
+    largest = fmax(largest, speed);
+  }
+  s.brute.v[n / 2].c[0] += (real)(7 * largest);
+  out = measured(&s);
+  near_to(VALUE(out, velocity_error_l1), 7 * largest / sum, 1e-8, 1e-4);
+  near_to(VALUE(out, velocity_error_max), 7, 1e-8, 1e-4);
+  assert_true(VALUE(out, velocity_error_p999) < (n > 1001 ? 1e-4 : 8));
   s.now.p = NULL; /* a method without pressure */
   out = measured(&s);
   assert_true(isnan(VALUE(out, pressure_error)) && isnan(VALUE(out, centre_pressure_error)));
