@@ -115,6 +115,8 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, pressure_error, s->pressure_error);
 }
 
+#define METRICS(M, word) M(word, front_position) | M(word, front_error) | M(word, pressure_error)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_dam_break = {
   .name = "dam-break",
@@ -122,7 +124,7 @@ const struct benchmark benchmark_dam_break = {
   .source = "Martin & Moyce 1952, Phil. Trans. R. Soc. Lond. A 244, 312-324",
   .asks = CAN(FREE_SURFACE),
   .dims = CAN(2D) | CAN(3D),
-  .measures = {MEASURES(front_position) | MEASURES(front_error) | MEASURES(pressure_error), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

@@ -80,6 +80,8 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, velocity_error, velocity_error(s, now));
 }
 
+#define METRICS(M, word) M(word, pressure_error) | M(word, velocity_error)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_first_step = {
   .name = "first-step",
@@ -88,7 +90,7 @@ const struct benchmark benchmark_first_step = {
     "Colagrossi 2005, PhD thesis; Le Touze et al. 2013, Int. J. Numer. Meth. Fluids 73, 660",
   .asks = CAN(FREE_SURFACE) | CAN(PROJECT),
   .dims = CAN(2D),
-  .measures = {MEASURES(pressure_error) | MEASURES(velocity_error), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

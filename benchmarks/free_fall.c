@@ -73,6 +73,8 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, velocity_error, velocity_error(now));
 }
 
+#define METRICS(M, word) M(word, trajectory_error) | M(word, velocity_error)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_free_fall = {
   .name = "free-fall",
@@ -80,7 +82,7 @@ const struct benchmark benchmark_free_fall = {
   .source = "Galilei 1638, Discorsi, third day",
   .asks = CAN(FREE_SURFACE),
   .dims = CAN(2D) | CAN(3D),
-  .measures = {MEASURES(trajectory_error) | MEASURES(velocity_error), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

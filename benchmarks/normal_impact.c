@@ -59,6 +59,9 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, orthogonality_defect, 2 * (mixed - after) / before);
 }
 
+#define METRICS(M, word) \
+  M(word, energy_loss) | M(word, energy_loss_error) | M(word, orthogonality_defect)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_normal_impact = {
   .name = "normal-impact",
@@ -66,8 +69,7 @@ const struct benchmark benchmark_normal_impact = {
   .source = "pressure-impulse theory, cf. Marrone et al. 2015, J. Fluids Struct. 54, 802",
   .asks = CAN(FREE_SURFACE) | CAN(PROJECT),
   .dims = CAN(2D) | CAN(3D),
-  .measures = {MEASURES(energy_loss) | MEASURES(energy_loss_error) | MEASURES(orthogonality_defect),
-               0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

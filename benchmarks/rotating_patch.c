@@ -134,6 +134,9 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
           squares_over_time(&s->tip, tip(now), L * truth_patch_tip(turned), interval));
 }
 
+#define METRICS(M, word) \
+  M(word, centre_pressure_error) | M(word, mid_edge_error) | M(word, tip_error)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_rotating_patch = {
   .name = "rotating-patch",
@@ -143,7 +146,7 @@ const struct benchmark benchmark_rotating_patch = {
     "Colagrossi 2005, PhD thesis; Le Touze et al. 2013, Int. J. Numer. Meth. Fluids 73, 660",
   .asks = CAN(FREE_SURFACE),
   .dims = CAN(2D),
-  .measures = {MEASURES(centre_pressure_error) | MEASURES(mid_edge_error) | MEASURES(tip_error), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

@@ -52,6 +52,8 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   if (now->p && now->step >= 1) MEASURE(out, pressure_error, pressure_error(now, g, H));
 }
 
+#define METRICS(M, word) M(word, residual_speed) | M(word, pressure_error)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_tank = {
   .name = "tank",
@@ -59,7 +61,7 @@ const struct benchmark benchmark_tank = {
   .source = "Batchelor 1967, An Introduction to Fluid Dynamics, sec. 1.4",
   .asks = CAN(FREE_SURFACE),
   .dims = CAN(2D) | CAN(3D),
-  .measures = {MEASURES(residual_speed) | MEASURES(pressure_error), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

@@ -64,6 +64,8 @@ static void measure(void *self, const struct snapshot *now, struct measures *out
   MEASURE(out, gap_difference, right - left);
 }
 
+#define METRICS(M, word) M(word, gap_left) | M(word, gap_right) | M(word, gap_difference)
+
 static const struct param params[] = PARAM_TABLE(PARAMS);
 const struct benchmark benchmark_three_particle = {
   .name = "three-particle",
@@ -71,7 +73,7 @@ const struct benchmark benchmark_three_particle = {
   .source = "Liu, He, Guo, Chang & Wang 2024, ACM Trans. Graph. 43(3), 28, Figs. 3 and 4",
   .asks = CAN(FREE_SURFACE),
   .dims = CAN(2D),
-  .measures = {MEASURES(gap_left) | MEASURES(gap_right) | MEASURES(gap_difference), 0},
+  .measures = MEASURES_OF(METRICS),
   .params = params,
   .num_params = COUNT(params),
   .state_size = sizeof(state),

@@ -39,10 +39,9 @@ struct benchmark {
    * trajectory_error, else velocity_error, else the first one. Optional. */
   int judged_by;
 };
-#define MEASURES(name) (1u << (METRIC_##name % 32))
-/* Both words, from LIST(M, word) = M(word, name) | M(word, name) ...: right wherever a metric
- * stands in its table. */
-#define MEASURES_IN(word, name) (METRIC_##name / 32 == (word) ? MEASURES(name) : 0u)
+/* Both words of `measures`, from LIST(M, word) = M(word, name) | M(word, name) ...: right wherever
+ * a metric stands in its table. */
+#define MEASURES_IN(word, name) (METRIC_##name / 32 == (word) ? 1u << (METRIC_##name % 32) : 0u)
 #define MEASURES_OF(LIST)                      \
   {                                            \
     LIST(MEASURES_IN, 0), LIST(MEASURES_IN, 1) \
