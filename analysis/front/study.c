@@ -300,7 +300,8 @@ static status check_method(struct study *s, int number, const char *log)
   struct run run;
   double coarsest = s->spacing;
   for (int k = 0; k < s->plan.spacing.n; k++) coarsest = fmax(coarsest, s->plan.spacing.value[k]);
-  const struct knobs knobs = {number, coarsest, study_dt(s, 1, coarsest), 1, 0, 0};
+  const struct knobs knobs = {
+    .method = number, .spacing = coarsest, .dt = study_dt(s, 1, coarsest), .factor = 1};
   TRY(study_timed(s, &knobs, &run));
   const char **argv = calloc((size_t)run.argc + 3, sizeof *argv);
   status result = argv ? OK : status_set(ERR_MEMORY, "out of memory");
