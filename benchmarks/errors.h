@@ -112,41 +112,50 @@ static inline void pressure_lengths(const struct snapshot *now, scalar_field *fi
   }
 }
 
+/* The metrics of a field's error, as in MEASURES_OF and as numbers: relative L2, L1, 99.9
+ * percentile, largest. */
+#define FIELD_ERRORS(M, word, field)                                                  \
+  (M(word, field##_error) | M(word, field##_error_l1) | M(word, field##_error_p999) | \
+   M(word, field##_error_max))
+#define VELOCITY_ERRORS(M, word) FIELD_ERRORS(M, word, velocity)
+#define PRESSURE_ERRORS(M, word) FIELD_ERRORS(M, word, pressure)
+#define MEASURE_NORMS(out, field, found)          \
+  do {                                            \
+    const struct norms norms = found; /* sorts */ \
+    MEASURE(out, field##_error, norms.l2);        \
+    MEASURE(out, field##_error_l1, norms.l1);     \
+    MEASURE(out, field##_error_p999, norms.p999); \
+    MEASURE(out, field##_error_max, norms.most);  \
+  } while (0)
+
+/* Room for the lengths of errors and of the truth, to be released by free(); NULL without memory.
+ */
+static inline double *lengths_make(int n)
+{
+  return (double *)malloc(2 * sizeof(double) * (size_t)n + 1);
+}
+
 /* All norms of the velocity's error; nothing without memory for them. */
 static inline void measure_velocity(const struct snapshot *now, vector_field *field,
                                     const void *truth, struct measures *out)
 {
-  double *lengths = (double *)malloc(2 * sizeof(double) * (size_t)now->n + 1);
+  double *lengths = lengths_make(now->n);
   if (!lengths) return;
   velocity_lengths(now, field, truth, lengths, lengths + now->n);
-  const struct norms norms = norms_of(lengths, lengths + now->n, now->n);
-  MEASURE(out, velocity_error, norms.l2);
-  MEASURE(out, velocity_error_l1, norms.l1);
-  MEASURE(out, velocity_error_p999, norms.p999);
-  MEASURE(out, velocity_error_max, norms.most);
+  MEASURE_NORMS(out, velocity, norms_of(lengths, lengths + now->n, now->n));
   free(lengths);
 }
-#define VELOCITY_ERRORS(M, word)                                                         \
-  (M(word, velocity_error) | M(word, velocity_error_l1) | M(word, velocity_error_p999) | \
-   M(word, velocity_error_max))
 
 /* The same of the pressure's, where the solver has one. */
 static inline void measure_pressure(const struct snapshot *now, scalar_field *field,
                                     const void *truth, int floating, struct measures *out)
 {
-  double *lengths = now->p ? (double *)malloc(2 * sizeof(double) * (size_t)now->n + 1) : NULL;
+  double *lengths = now->p ? lengths_make(now->n) : NULL;
   if (!lengths) return;
   pressure_lengths(now, field, truth, floating, lengths, lengths + now->n);
-  const struct norms norms = norms_of(lengths, lengths + now->n, now->n);
-  MEASURE(out, pressure_error, norms.l2);
-  MEASURE(out, pressure_error_l1, norms.l1);
-  MEASURE(out, pressure_error_p999, norms.p999);
-  MEASURE(out, pressure_error_max, norms.most);
+  MEASURE_NORMS(out, pressure, norms_of(lengths, lengths + now->n, now->n));
   free(lengths);
 }
-#define PRESSURE_ERRORS(M, word)                                                         \
-  (M(word, pressure_error) | M(word, pressure_error_l1) | M(word, pressure_error_p999) | \
-   M(word, pressure_error_max))
 
 /* Means over the support around the origin, weighted by the cubic spline, of the pressure and of
  * its truth [Pa]; both 0, as outside the fluid, where nothing is. */

@@ -44,6 +44,16 @@ status solver_names(struct names *names)
   return names->n ? OK : status_set(ERR_IO, "'%s' lists no solvers", executable.text);
 }
 
+status solver_number(const struct names *all, const char *name, int *number)
+{
+  for (*number = 1; *number <= all->n; ++*number)
+    if (strcmp(all->name[*number - 1], name) == 0) return OK;
+  const char *near = nearest_name(name, (const char *const *)all->name, all->n);
+  return near
+           ? user_error("--solvers: unknown solver '%s'; the nearest known one is '%s'", name, near)
+           : user_error("--solvers: unknown solver '%s'; 'sphbench list solvers' lists them", name);
+}
+
 /* Number of a solver, from 1; 0: unknown. */
 static int number_of(const struct names *solvers, const char *name)
 {

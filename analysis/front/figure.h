@@ -9,6 +9,9 @@
  * every figure. ERR_USER: no variant is built; ERR_IO. */
 status solver_names(struct names *names);
 
+/* The number, from 1, of a solver that --solvers names. ERR_USER, with the nearest known name. */
+status solver_number(const struct names *all, const char *name, int *number);
+
 /* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
 struct figure_case {
   int run;     /* in the queue */

@@ -31,7 +31,7 @@ struct profiles {
   double *time, *pairs; /* [problems * solvers] */
 };
 
-static int solver_number(struct profiles *p, const char *name)
+static int place_of(struct profiles *p, const char *name)
 {
   for (int k = 0; k < p->num_solvers; k++)
     if (strcmp(p->solver[k], name) == 0) return k;
@@ -48,7 +48,7 @@ static void take_point(struct profiles *p, struct problem *problem, const json_t
   const json_t *pairs = json_object_get(point, "pairs"),
                *size = json_object_get(point, "particles");
   if (!name || !json_is_true(json_object_get(point, "valid"))) return;
-  const int s = solver_number(p, name);
+  const int s = place_of(p, name);
   if (s < 0 || !json_is_number(error) || json_number_value(error) > target) return;
   if (json_is_number(time)) problem->time[s] = fmin(problem->time[s], json_number_value(time));
   if (json_is_number(pairs) && json_number_value(size) > 0)
@@ -63,7 +63,7 @@ static void take_names(struct profiles *p, const json_t *points)
   json_array_foreach((json_t *)points, k, point)
   {
     const char *name = json_string_value(json_object_get(point, "solver"));
-    if (name) solver_number(p, name);
+    if (name) place_of(p, name);
   }
 }
 

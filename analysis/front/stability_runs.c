@@ -204,21 +204,14 @@ static status ask_dry(struct stability *s, int number, const char *log)
 
 static status add_solver(struct stability *s, const struct names *all, const char *name)
 {
-  int number = 0;
-  while (number < all->n && strcmp(all->name[number], name) != 0) number++;
-  if (number == all->n) {
-    const char *near = nearest_name(name, (const char *const *)all->name, all->n);
-    return near ? user_error("--solvers: unknown solver '%s'; the nearest known one is '%s'", name,
-                             near)
-                : user_error("--solvers: unknown solver '%s'; 'sphbench list solvers' lists them",
-                             name);
-  }
+  int number;
+  TRY(solver_number(all, name, &number));
   for (int k = 0; k < s->num_solvers; k++)
     if (strcmp(s->solver[k].name, name) == 0)
       return user_error("--solvers: '%s' is named twice", name);
   if (s->num_solvers == MOST_METHODS) return user_error("--solvers: more than %d", MOST_METHODS);
   s->solver[s->num_solvers++] = (struct candidate_solver){
-    .name = strdup(name), .colour = number + 1, .failed = HUGE_VAL, .reason = VERDICT_STABLE};
+    .name = strdup(name), .colour = number, .failed = HUGE_VAL, .reason = VERDICT_STABLE};
   return OK;
 }
 

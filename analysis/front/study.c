@@ -154,20 +154,13 @@ static status learn_method(struct method *m, const struct path *executable)
 
 static status add_method(struct study *s, const struct names *all, const char *name)
 {
-  int number = 0;
-  while (number < all->n && strcmp(all->name[number], name) != 0) number++;
-  if (number == all->n) {
-    const char *near = nearest_name(name, (const char *const *)all->name, all->n);
-    return near ? user_error("--solvers: unknown solver '%s'; the nearest known one is '%s'", name,
-                             near)
-                : user_error("--solvers: unknown solver '%s'; 'sphbench list solvers' lists them",
-                             name);
-  }
+  int number;
+  TRY(solver_number(all, name, &number));
   for (int k = 0; k < s->num_methods; k++)
     if (strcmp(s->method[k].name, name) == 0)
       return user_error("--solvers: '%s' is named twice", name);
   if (s->num_methods == MOST_METHODS) return user_error("--solvers: more than %d", MOST_METHODS);
-  s->method[s->num_methods++] = (struct method){.name = strdup(name), .colour = number + 1};
+  s->method[s->num_methods++] = (struct method){.name = strdup(name), .colour = number};
   return OK;
 }
 
