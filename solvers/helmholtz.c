@@ -38,8 +38,9 @@
   "gradient: rho_0 in place of the factor rho_i of its gradient, so that momentum is kept\n"       \
   "kappa: a step also aims at taking that part of the excess density away; without gravity none\n" \
   "order: positions move first, with the projected velocity\n"                                     \
-  "stopping: by the rms volume change per step that the residual means, and by a part of the "     \
-  "first residual (tolerance = 1: by the former alone, as in the paper)\n"                         \
+  "stopping: by the mean compression of a step that the residual means, as IISPH and DFSPH (the "  \
+  "paper does not say how its bound is measured), and by a part of the first residual "            \
+  "(tolerance = 1: by the former alone, as in the paper)\n"                                        \
   "eos: off by default; its pressure is cut off below rho_0, where it would contract surfaces\n"   \
   "viscosity: that of the scene, not Eq. (13)\n"                                                   \
   "several fluids: 1/rho_i as in Cummins & Rudman 1999; the paper has one"
@@ -51,7 +52,7 @@ enum { LEAST_ITERATIONS = 2 };
 #define TINY ((real)1e-12) /* of R^2: keeps r = 0 from 0/0 */
 
 #define PARAMS(P)                                                                               \
-  P(volume_error, 1e-4, 0, 1, "1", "rms relative change of volume per step that CG may leave")  \
+  P(volume_error, 1e-4, 0, 1, "1", "mean compression of a step that CG may leave")              \
   P(tolerance, 1e-3, 0, 1, "1", "part of the divergence that CG may leave")                     \
   P(max_iterations, 1000, 1, 1e6, WHOLE, "largest number of CG iterations")                     \
   P(fixed_iterations, 0, 0, 1e6, WHOLE, "exactly so many CG iterations; 0: by tolerance")       \
@@ -134,15 +135,14 @@ STAGE lanes mass_felt(const state *s, struct packet ij)
 }
 
 /* Eq. (18)  -div v*_i = 1/rho_i sum_j m_j (v*_i - v*_j) . grad W_ij, over walls too,
- *           + kappa (rho_i/rho_0 - 1)/dt where rho_i > rho_0; returns its part of the norm */
-STAGE real divergence(const state *s, int i)
+ *           + kappa (rho_i/rho_0 - 1)/dt where rho_i > rho_0 */
+STAGE void divergence(const state *s, int i)
 {
   lanes rate = NO_LANES;
   for_neighbours (s, i, ij) rate += mass_felt(s, ij) * dot(diff(s->p.v, ij), gradW(&s->nb, ij));
   const real excess = larger(s->p.rho[i] / s->rho0 - 1, 0);
   const real b = sum(rate) / s->p.rho[i] + s->kappa * excess / s->dt;
   s->source[i] = held(s, i) ? 0 : b;
-  return s->p.V[i] * sq(s->source[i]);
 }
 
 /* What Eq. (18) finds of the velocities that `repel` gives for phi_i = 1 alone:
@@ -201,8 +201,8 @@ STAGE void pressure(const state *s, int i)
   s->p.p[i] += p;
 }
 
-/* Sec. 3.3; squares: sum_i V_i source_i^2. The paper's bound of at least two iterations. */
-static struct cg_result conjugate_gradients(state *s, double squares)
+/* Sec. 3.3. The paper's bound of at least two iterations. */
+static struct cg_result conjugate_gradients(state *s)
 {
   struct cg cg;
   cg.n = s->p.n;
@@ -221,10 +221,9 @@ static struct cg_result conjugate_gradients(state *s, double squares)
     result.converged = 1;
     return result;
   }
-  const double rms = sqrt(squares / (s->p.n * (double)(s->mass / s->rho0)));
-  const double bound = (double)s->volume_error / ((double)s->dt * rms); /* infinite for rms = 0 */
-  const double tolerance = bound < (double)s->tolerance ? bound : (double)s->tolerance;
-  result = cg_solve(&cg, tolerance, (int)s->max_iterations);
+  const double volume = s->p.n * (double)(s->mass / s->rho0);
+  const double excess = (double)s->volume_error * volume / (double)s->dt;
+  result = cg_solve_to(&cg, (double)s->tolerance, excess, (int)s->max_iterations);
   if (result.iterations == 1 && result.residual > 0) {
     sweep(forget, s);
     result = cg_solve(&cg, 0, LEAST_ITERATIONS);
@@ -236,12 +235,11 @@ static struct cg_result conjugate_gradients(state *s, double squares)
 /* Sec. 3.2   lap phi = div v*,   v = v* - grad phi */
 static status solve(struct run *run, state *s)
 {
-  double squares;
-  sum_over(divergence, s, s->p.n, &squares);
+  sweep(divergence, s);
   s->coef = run_coefficients(run, 0, s->nb.slots);
   if (!s->coef) return status_set(ERR_MEMORY, "no memory for the matrix");
   sweep(laplacian, s);
-  const struct cg_result found = conjugate_gradients(s, squares);
+  const struct cg_result found = conjugate_gradients(s);
   if (!(found.residual >= 0)) return run_diverged(run, "the divergence is not a number");
   run_iterations(run, "pressure", found.iterations, found.residual, found.converged);
   sweep(pressure, s);

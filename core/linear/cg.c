@@ -56,6 +56,7 @@ static void level(struct cg *s)
 STAGE void clear(const struct cg *s, int i) { s->x[i] = 0; }
 STAGE real norm_b(const struct cg *s, int i) { return s->weight[i] * sq(s->b[i]); }
 STAGE real norm_r(const struct cg *s, int i) { return s->weight[i] * sq(s->r[i]); }
+STAGE real positive_r(const struct cg *s, int i) { return s->weight[i] * larger(s->r[i], 0); }
 /* <r, z>,  z = r / diag */
 STAGE real r_dot_z(const struct cg *s, int i) { return s->weight[i] * sq(s->r[i]) / s->diag[i]; }
 /* q = A d;  <d, q> */
@@ -76,6 +77,19 @@ STAGE void turn(const struct cg *s, int i) { s->d[i] = s->r[i] / s->diag[i] + s-
 
 struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
 {
+  return cg_solve_to(s, tolerance, HUGE_VAL, max_iterations);
+}
+
+static int reached(const struct cg *s, double rr, double most, double excess)
+{
+  double left = 0;
+  if (!(rr <= most)) return 0;
+  if (isfinite(excess)) sum_over(positive_r, s, s->n, &left);
+  return left <= excess;
+}
+
+struct cg_result cg_solve_to(struct cg *s, double tolerance, double excess, int max_iterations)
+{
   struct cg_result result = {0, 1, 0};
   double bb, rr, rz, dq;
   if (floats(s)) level(s);
@@ -85,10 +99,9 @@ struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
     return result;
   }
   sweep_over(residual, s, s->n);
-  sum_over(norm_r, s, s->n, &rr);
   sum_over(r_dot_z, s, s->n, &rz);
-  while (result.iterations < max_iterations &&
-         (result.iterations == 0 || rr > tolerance * tolerance * bb)) {
+  result.converged = 0;
+  while (result.iterations < max_iterations && !result.converged) {
     sum_over(apply, s, s->n, &dq);
     if (!(dq > 0)) break; /* the residual is zero, or the matrix is not positive definite */
     s->step = (real)(rz / dq);
@@ -98,8 +111,10 @@ struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
     s->beta = (real)(rz / rz_before);
     sweep_over(turn, s, s->n);
     result.iterations++;
+    result.converged = reached(s, rr, tolerance * tolerance * bb, excess);
   }
+  sum_over(norm_r, s, s->n, &rr);
   result.residual = sqrt(rr / bb);
-  result.converged = rr <= tolerance * tolerance * bb;
+  result.converged = reached(s, rr, tolerance * tolerance * bb, excess);
   return result;
 }

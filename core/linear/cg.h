@@ -33,6 +33,9 @@ struct cg_result {
  * 0; exactly max_iterations where tolerance = 0). b = 0 gives x = 0. */
 struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations);
 
+/* The same, but until sum_i w_i max(r_i, 0) <= excess [of w r], too. */
+struct cg_result cg_solve_to(struct cg *s, double tolerance, double excess, int max_iterations);
+
 #ifdef __cplusplus
 }
 #endif
