@@ -81,7 +81,8 @@ enum { WALLS_ORDINARY, WALLS_STILL, WALLS_MIRRORED };
   P(diagonal, OWN, 0, 1, "own|common", "1 + S_i/beta, or 1 + max S/beta: conserves momentum")    \
   P(beta, 1, 0.1, 10, "1", "what S is divided by in the diagonal; 3 converges 2.8 times faster") \
   P(acceleration, PLAIN, 0, 2, "plain|chebyshev|anderson", "Eqs. (14), (22), (21)")              \
-  P(spectral_radius, 0, 0, 0.9999, "1", "spectral radius rho of Eq. (23); 0: matched to S")      \
+  P(spectral_radius, 0, 0, 0.9999, "1",                                                          \
+    "spectral radius rho of Eq. (23); 0: that of a lattice, S/(1 + S)")                          \
   P(history, 1, 1, 5, WHOLE, "n of Eq. (21), an integer")                                        \
   P(safeguard, GUARD_RESIDUAL, 0, 2, "none|psi|residual", "what an accelerated step may not raise")
 
@@ -304,7 +305,7 @@ static void chebyshev_step(const state *s, struct accelerator *a)
                                     (real *)s->last};
   const struct chebyshev_field p = {n, s->p.p, s->next_p, s->last_p};
   struct chebyshev *c = &a->chebyshev;
-  const real matched = 1 - 1 / (1 + s->common / s->beta);
+  const real matched = 1 - 1 / (1 + s->S * larger(s->stiff_ratio, 1) / s->beta);
   if (c->k == 0) c->rho = s->spectral_radius > 0 ? s->spectral_radius : smaller(matched, MOST_RHO);
   chebyshev_next(c);
   chebyshev_apply(c, x);

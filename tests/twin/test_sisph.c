@@ -69,6 +69,20 @@ static double twin_a(const struct cloud *c, int i, int j)
   return near[i][j] && r > 0 ? c->dt * c->dt * c->light[i] / c->rho0 * scaled * slope / r : 0;
 }
 
+/* S of a full lattice */
+static double twin_lattice_S(const struct cloud *c, const struct choices *o)
+{
+  double total = 0;
+  for (int a = -9; a <= 9; a++)
+    for (int b = -9; b <= 9; b++)
+      for (int d = DIM == 3 ? -9 : 0; d <= (DIM == 3 ? 9 : 0); d++) {
+        const double r = c->dx * sqrt((double)(a * a + b * b + d * d));
+        if (r > 0) total -= (double)kernel_dW(&c->kernel, (real)r, DIM) / r;
+      }
+  const double K = o->K * fmax(o->ratio, 1);
+  return (o->form == EQ_14 ? 2 : 1) * K * pow(c->dt / c->rho0, 2) * c->mass * total;
+}
+
 /* S_i and the residual x*_i + sum A- (x_j - x_i) + sum A+ x_j - (1 + S_i) x_i of Eq. (12), (14) */
 static void twin_sums(const struct cloud *c, const struct choices *o, int i)
 {
@@ -195,7 +209,8 @@ static void put(struct cloud *c, double (*x)[COMPONENTS])
 static void twin_minimise(struct cloud *c, const struct choices *o)
 {
   int from = 0, fast = 0;
-  double kept = 0, matched = 0;
+  double kept = 0;
+  const double matched = twin_lattice_S(c, o) / o->beta;
   struct choices now = *o;
   for (int k = 0; k < o->iterations; k++) {
     double psi = 0;
@@ -208,7 +223,6 @@ static void twin_minimise(struct cloud *c, const struct choices *o)
       past_x[k][i][DIM] = c->p[i];
     }
     const double square = twin_substitute(c, o, past_g[k], past_f[k]);
-    for (int i = 0; i < c->n && k == 0; i++) matched = fmax(matched, S[i] / o->beta);
     if (o->radius == 0) now.radius = fmin(matched / (1 + matched), 0.995);
     const double merit = o->guard == GUARD_PSI ? psi : square;
     if (o->acceleration == ANDERSON && o->guard != GUARD_NONE && fast && merit > kept) {
