@@ -3,8 +3,11 @@
 # step [m] of the axes' marks, if need be `upward`, and then loads this file.
 
 load 'contents.gp'
-if (!exists('left')) { left = 190.0 } # room for the rows' labels [px]
-right = 124.0; top = 40.0; bottom = 58.0; gap = 12.0
+longest = 0
+do for [r = 1:rows] { longest = strlen(row[r]) > longest ? strlen(row[r]) : longest }
+left = 112.0 + 9.2*longest # room for the rows' labels [px]
+right = 124.0; top = 40.0; bottom = 80.0
+if (!exists('gap')) { gap = 12.0 }
 width = left + right + columns*cell_width + (columns - 1)*gap
 height = top + bottom + rows*cell_height + (rows - 1)*gap
 load shared.'style.gp'
@@ -15,6 +18,7 @@ nothing = '/dev/null'
 y_label_offset = 0.3
 if (!exists('upward')) { upward = 'y [m]' }
 y_label = cell_height > 60 ? upward : ''
+small = cell_width < 200 ? ',9' : ',11'
 
 unset key
 unset grid
@@ -50,10 +54,11 @@ do for [r = 1:rows] {
     if (cell == 1) { set label 4 label_colour at screen 1 - 12/width, screen 0.5 center rotate }
     if (c == 1) { set label 2 row[r] at screen 8/width, graph 0.5 left noenhanced }
     if (note[cell] ne '') {
-      set label 3 note[cell] at graph 0.5, graph 0.5 center font ',11' textcolor rgb '#666666'
+      set label 3 note[cell] at graph 0.5, graph 0.5 center font small textcolor rgb '#666666'
     }
     if (cell == rows*columns) {
-      set label 99 size_note at screen 0.995, screen 0.02 right font ',9' textcolor rgb '#666666'
+      set label 99 size_note at screen 0.995, screen 10/height right font ',9' \
+        textcolor rgb '#666666'
     }
     outline = 0
     do for [k = 1:num_overlays] { if (abs(overlay_time[k] - time[c]) < 1e-6) { outline = k } }

@@ -15,7 +15,7 @@ if (!exists('rows')) {
 cells = rows*columns
 across = cells < across ? cells : across
 lines = (cells + across - 1)/across
-left = 76.0; right = 130.0; top = 34.0; bottom = 70.0; gap_x = 14.0; gap_y = 30.0
+left = 76.0; right = 130.0; top = 34.0; bottom = 84.0; gap_x = 14.0; gap_y = 30.0
 width = left + right + across*cell_width + (across - 1)*gap_x
 height = top + bottom + lines*cell_height + (lines - 1)*gap_y
 load shared.'style.gp'
@@ -53,8 +53,9 @@ do for [cell = 1:cells] {
   about = columns == 1 ? row[r] : sprintf('t = %g s', time[c])
   if (columns > 1 && c == 1) { about = row[r].', '.about }
   set label 2 about \
-    at graph 0, screen high + 10/height left noenhanced font ',11'
-  set label 99 size_note at screen 0.995, screen 0.02 right noenhanced font ',9' \
+    at graph 0, screen high + 10/height left noenhanced \
+    font (7.4*strlen(about) < cell_width ? ',11' : ',9')
+  set label 99 size_note at screen 0.995, screen 10/height right noenhanced font ',9' \
     textcolor rgb '#666666'
   if (cell == 1) { set label 4 label_colour at screen 1 - 12/width, screen 0.5 center rotate }
   if (note[cell] ne '') {

@@ -21,7 +21,8 @@ set encoding utf8
 # Solver number k of `sphbench list solvers` has line type k: a colour, a mark and a dash of its
 # own, told apart by the colour-blind as well (after Okabe and Ito); where two curves coincide, the
 # thin dashed one lies on the wide one. Another form of a solver (a recipe's runs with a label) has
-# the same colour, thin and dotted with an open mark: line type 20 + k.
+# the same colour, thin and dotted with an open mark: line type 20 + k; a second label's are dashed
+# with a plus (40 + k), a third's dashed and dotted with a cross (60 + k).
 array hue[20] = ['#0072b2', '#e69f00', '#d55e00', '#009e73', '#a6266e', '#56b4e9', \
   '#7a6a00', '#333333', '#882255', '#44aa99', '#6a51a3', '#a6761d', \
   '#e377c2', '#00494d', '#9ccb19', '#f06060', '#999999', '#3b2a8c', '#c9a400', '#5f9ea0']
@@ -38,6 +39,8 @@ do for [k = 1:20] {
     set linetype k linecolor rgb hue[k] linewidth 2.2 pointtype full[k] dashtype solid
   }
   set linetype 20 + k linecolor rgb hue[k] linewidth 1.4 pointtype open[k] dashtype (2,3)
+  set linetype 40 + k linecolor rgb hue[k] linewidth 1.4 pointtype 1 dashtype (7,3)
+  set linetype 60 + k linecolor rgb hue[k] linewidth 1.4 pointtype 2 dashtype (7,3,2,3)
 }
 
 # What is measured or exact, not computed by a solver.

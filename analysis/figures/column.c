@@ -5,7 +5,8 @@
  *   K_eff = K G^2,   G = sum_j |W'(r_j)| r_j / (d sum_j W(r_j)),
  *
  * and N iterations of Eq. (14) show K_eff phi of it, phi = 1 - (S/(1 + S))^N. theory.dat has the
- * sinking over K with K, K_eff and K_eff phi of the first run; CURVE-measured.dat that of the runs.
+ * sinking over K with K, K_eff and K_eff phi of the first run; CURVE-measured.dat that of the runs,
+ * and how many particles went through the walls, which then count with where they are.
  * Values: sinking and theory (K_eff phi) of each run, G^2. */
 #include "lambda.h"
 
@@ -68,7 +69,8 @@ static status write_theory(struct program *p)
 /* The runs of one curve, whose label up to the comma is `name`. */
 static status write_measured(struct program *p, const char *name)
 {
-  FILE *out = program_data(p, name, "-measured", "K [Pa] | mu [J] | sinking [1] | K G^2 phi [1]");
+  FILE *out =
+    program_data(p, name, "-measured", "K [Pa] | mu [J] | sinking [1] | K G^2 phi [1] | lost [1]");
   if (!out) return ERR_IO;
   for (int k = 0; k < p->n; k++) {
     const struct figure_run *run = &p->run[k];
@@ -77,7 +79,8 @@ static status write_measured(struct program *p, const char *name)
     const double measured = program_fact(run, "metrics.settlement.value");
     if (strcspn(run->label, ",") != strlen(name) || strncmp(run->label, name, strlen(name)) != 0)
       continue;
-    fprintf(out, "%.6g %.6g %.6g %.6g\n", K, program_fact(run, "parameters.mu"), measured, theory);
+    fprintf(out, "%.6g %.6g %.6g %.6g %g\n", K, program_fact(run, "parameters.mu"), measured,
+            theory, program_fact(run, "metrics.particles_lost.value"));
     program_run_value(p, "sinking", run->label, measured);
     program_run_value(p, "theory", run->label, theory);
   }

@@ -10,6 +10,10 @@
  *             energy and K, of which one should go by a tolerance (fixed_iterations = 0)
  *   Eq. (18)  the same with the curve's own last iterate in the place of the minimum
  *
+ * Each run of some ms has its own noise: the time of k iterations is that of the line through all
+ * runs of a curve whose slope is the median of those between two of them (Sen 1968, J. Am. Stat.
+ * Assoc. 63, 1379).
+ *
  * With the argument `functions` also B_0, B_1, B_2 and their slopes, Eqs. (15) - (17). Values: the
  * iterations and the time at which a curve passes 0.1, 0.01 and 0.001, what its last iterate
  * leaves. He et al. 2025, Comput. Graph. Forum, Sec. 4.3, Figs. 5 and 6. */
@@ -165,6 +169,31 @@ static double passing(const struct curve *c, double least, double level, int of_
   return (double)NAN;
 }
 
+static int by_size(const void *a, const void *b)
+{
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+static double median(double *values, int n)
+{
+  qsort(values, (size_t)n, sizeof *values, by_size);
+  return n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+static void smooth_times(struct curve *c)
+{
+  static double values[MOST * MOST];
+  int n = 0;
+  if (c->n < 2) return;
+  for (int k = 0; k < c->n; k++)
+    for (int j = 0; j < k; j++)
+      values[n++] = (c->point[k].time - c->point[j].time) / (c->point[k].k - c->point[j].k);
+  const double slope = median(values, n);
+  for (int k = 0; k < c->n; k++) values[k] = c->point[k].time - slope * c->point[k].k;
+  const double start = median(values, c->n);
+  for (int k = 0; k < c->n; k++) c->point[k].time = start + slope * c->point[k].k;
+}
+
 static void put_values(struct program *p, const struct curve *c, double least)
 {
   program_run_value(p, "iterations_1", c->name, passing(c, least, 1e-1, 0));
@@ -216,8 +245,10 @@ static status treat_all(struct program *p, struct curve *curves)
     TRY(energies(&p->run[k], &c->psi_start, &point->psi));
   }
   for (int k = 0; k < n; k++)
-    if (curves[k].point[0].k > 0)
+    if (curves[k].point[0].k > 0) {
+      smooth_times(&curves[k]);
       TRY(write_curve(p, &curves[k], minimum_for(curves, n, &curves[k])));
+    }
   return OK;
 }
 

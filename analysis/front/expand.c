@@ -76,13 +76,27 @@ static struct run_request request_of(const struct recipe_runs *runs)
                               .vary = runs->vary ? runs->vary->name : NULL};
 }
 
+/* Which form of its solver a label is, from 1; as many as there are line types of a colour. */
+static int form_of(const struct figure *f, const char *solver, const char *label)
+{
+  enum { FORMS = 3 };
+  int forms = 0;
+  for (int k = 0; k < f->n; k++) {
+    const struct figure_case *one = &f->cases[k];
+    if (!one->name || strcmp(one->solver, solver) != 0) continue;
+    if (strcmp(one->name, label) == 0) return one->colour / MOST_COLOURS;
+    if (one->colour / MOST_COLOURS > forms) forms = one->colour / MOST_COLOURS;
+  }
+  return forms < FORMS ? forms + 1 : FORMS;
+}
+
 static status add_case(struct figure *f, const struct recipe_runs *runs, struct figure_case one,
                        struct queue *queue)
 {
   struct run_request request = request_of(runs);
   request.solver = one.solver;
   request.value = one.value;
-  if (runs->label) one.colour += 20;
+  if (runs->label) one.colour += MOST_COLOURS * form_of(f, one.solver, runs->label);
   struct figure_case *more = realloc(f->cases, (size_t)(f->n + 1) * sizeof *more);
   if (!more) return status_set(ERR_MEMORY, "out of memory");
   f->cases = more;

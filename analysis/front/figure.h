@@ -13,9 +13,12 @@ status solver_names(struct names *names);
 status solver_number(const struct names *all, const char *name, int *number);
 
 /* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
+/* Line types of style.gp: a solver has that of its number, its other forms those beyond. */
+enum { MOST_COLOURS = 20 };
+
 struct figure_case {
   int run;     /* in the queue */
-  int colour;  /* number of the solver, from 1; 20 more where a label tells the runs from others */
+  int colour;  /* number of the solver, from 1; MOST_COLOURS more for each label of its runs */
   int group;   /* cases of one curve have the same */
   char *curve; /* the solver, and what the recipe adds to tell it from itself */
   char *label; /* the same with the value of the varied parameter: "name, spacing 0.01" */

@@ -75,11 +75,6 @@ STAGE real advance(const struct cg *s, int i)
 /* d = z + beta d */
 STAGE void turn(const struct cg *s, int i) { s->d[i] = s->r[i] / s->diag[i] + s->beta * s->d[i]; }
 
-struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
-{
-  return cg_solve_to(s, tolerance, HUGE_VAL, max_iterations);
-}
-
 static int reached(const struct cg *s, double rr, double most, double excess)
 {
   double left = 0;

@@ -5,6 +5,8 @@
  * pressure) constants cost nothing: b loses its weighted mean, and the x with none is found. */
 #ifndef CG_H
 #define CG_H
+#include <math.h>
+
 #include "../neighbours/pairs.h"
 #include "../sph/sweep.h"
 #ifdef __cplusplus
@@ -29,12 +31,16 @@ struct cg_result {
   double residual; /* ||b - A x|| / ||b|| in the weighted norm, by the recurrence */
 };
 
-/* Iterate from x until residual <= tolerance or max_iterations (at least one iteration unless b =
- * 0; exactly max_iterations where tolerance = 0). b = 0 gives x = 0. */
-struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations);
-
-/* The same, but until sum_i w_i max(r_i, 0) <= excess [of w r], too. */
+/* Iterate from x until residual <= tolerance and sum_i w_i max(r_i, 0) <= excess, or max_iterations
+ * (at least one iteration unless b = 0; exactly max_iterations where tolerance = 0). b = 0 gives
+ * x = 0. */
 struct cg_result cg_solve_to(struct cg *s, double tolerance, double excess, int max_iterations);
+
+/* The same by the residual alone. */
+static inline struct cg_result cg_solve(struct cg *s, double tolerance, int max_iterations)
+{
+  return cg_solve_to(s, tolerance, HUGE_VAL, max_iterations);
+}
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,4 @@
 # Three particles at five times.
-left = 230.0
 cell_width = 180.0
 cell_height = 36.0
 array step[5] = [0.01, 0.01, 0.01, 0.01, 0.01]

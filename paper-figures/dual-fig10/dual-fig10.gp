@@ -1,5 +1,4 @@
 # Square patch: solvers of the paper at every time, with the exact free surface where it is known.
-if (!exists('left')) { left = 220.0 }
 cell_width = 170.0
 cell_height = 170.0
 array step[4] = [0.2, 0.3, 0.5, 0.5]

@@ -3,7 +3,7 @@ width = 1320; height = 720
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 2,3 margins 0.06,0.985,0.128,0.95 spacing 0.045,0.17
+set multiplot layout 2,3 margins 0.075,0.985,0.128,0.95 spacing 0.05,0.17
 array first[3] = [1, 4, 7]
 array last[3] = [3, 6, 9]
 array about[3] = ['strategies', 'spacing of virtual particles', 'time step']
@@ -13,9 +13,8 @@ set format y '10^{%L}'
 do for [form = 2:3] {
   do for [p = 1:3] {
     set title about[p] offset 0,-0.6
-    set ylabel p > 1 ? '' : form == 2 ? 'Γ as printed [mixed]' : 'Γ, dimensionless [1]'
-    set key bottom right
-    if (form == 2) { set key top left }
+    set ylabel (p > 1 ? '' : form == 2 ? 'Γ as printed [mixed]' : 'Γ, dimensionless [1]')
+    set key bottom right font ',12'
     if (p == 1) {
       plot for [k = 1:3] file[k] using 1:(column(form)) with lines lt colour[k] title title[k]
     } else {

@@ -1,2 +1,2 @@
-one_solver = 1
+one_solver = 0
 load shared.'coherence.gp'

@@ -2,6 +2,5 @@
 cell_width = 230.0
 cell_height = 119.0
 array step[4] = [0.5, 0.5, 0.5, 0.5]
-left = 180.0
 upward = 'z [m]'
 load shared.'frames.gp'

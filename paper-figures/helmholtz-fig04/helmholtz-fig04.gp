@@ -2,6 +2,5 @@
 cell_width = 190.0
 cell_height = 175.0
 array step[4] = [1, 1, 1, 1]
-left = 180.0
 upward = 'z [m]'
 load shared.'frames.gp'

@@ -2,7 +2,7 @@ width = 1060; height = 420
 load shared.'style.gp'
 load shared.'shades.gp'
 load 'contents.gp'
-set multiplot layout 1,2 margins 0.08,0.985,0.219,0.9 spacing 0.09
+set multiplot layout 1,2 margins 0.08,0.965,0.219,0.9 spacing 0.09
 array panel[2] = ['momentum [kg m/s]', 'kinetic energy [J]']
 set xlabel label_x
 set key center right

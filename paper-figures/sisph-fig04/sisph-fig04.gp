@@ -9,7 +9,7 @@ set xlabel label_x
 unset key
 do for [c = 1:3] {
   set title panel[c] offset 0,-0.4
-  if (c == 3) { set key center right }
+  if (c == 3) { set key at graph 1, graph 0.3 right top font ',11' }
   if (c < 3) { set logscale y; set format y '10^{%L}' } else { unset logscale; set format y '%g' }
   plot for [k = 1:n] file[k] using 1:(column(c + 1)) with lines ls 200 + k title title[k]
 }

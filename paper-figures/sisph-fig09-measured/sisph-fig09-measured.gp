@@ -1,1 +1,2 @@
+one_solver = 0
 load shared.'difference.gp'

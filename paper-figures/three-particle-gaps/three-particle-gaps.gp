@@ -1,4 +1,4 @@
-width = 1320; height = 400
+width = 1320; height = 440
 load shared.'style.gp'
 load 'contents.gp'
 set multiplot layout 1,3 margins 0.065,0.79,0.2,0.89 spacing 0.07
@@ -13,7 +13,8 @@ do for [c = 1:3] {
   set title panel[c] offset 0,-0.4
   if (c == 3) {
     set xzeroaxis linetype -1 linewidth 0.8
-    set key at screen 0.8, screen 0.89 left top vertical Left reverse
+    set key at screen 0.8, screen 0.89 left top vertical maxcols 1 Left reverse \
+      font ',10' spacing 0.95
   }
   plot for [k = 1:n] file[k] using 1:(column(c + 1)) with linespoints lt colour[k] \
     pointinterval 12 title title[k]

@@ -8,6 +8,7 @@ import subprocess
 
 import cli_case
 from cli_case import h5py
+import numpy
 
 BLOCK = """
 dim: 3
@@ -104,6 +105,34 @@ class Programs(cli_case.Case):
         expected = apart / sum(math.dist(a, middle) ** 2 for a in v)
         self.assertGreater(expected, 1e-4)
         self.assertAlmostEqual(values["variance_dam"] / expected, 1, 6)
+
+    def patch(self, solver):
+        run = self.simulate(solver, "rotating-patch", "--solver", solver, "--spacing", 0.01,
+                            "--t-end", 1.2, "--frames", 4)
+        return self.program("regularity", "--", run)[0]
+
+    def test_regularity_by_brute_force(self):
+        """S.C lets the patch deform; PBF turns it and lets it expand, which presses nothing."""
+        values = self.patch("pbf")
+        self.assertEqual(values["squeezed_pbf"], 0)
+        self.assertEqual(values["clumped_pbf"], 0)
+        values = self.patch("dual-sc")
+        frames = self.frames("dual-sc")
+        start, x = (numpy.array(frames[k]["position"])[:, :2] for k in (0, -1))
+        clumped, squeezed = [], []
+        for i in range(len(x)):
+            far = numpy.hypot(*(x - x[i]).T)
+            clumped.append(numpy.sort(far)[1] < 0.005)
+            old, new = start - start[i], x - x[i]
+            near = numpy.hypot(*old.T) < 0.0145
+            fit = numpy.linalg.lstsq(old[near], new[near], rcond=None)[0]
+            squeezed.append(numpy.linalg.svd(fit)[1][1] < 0.5)
+        clumped, squeezed = numpy.array(clumped), numpy.array(squeezed)
+        self.assertGreater(squeezed.mean(), 0.1)
+        self.assertGreater(clumped.mean(), 0.02)
+        self.assertAlmostEqual(values["clumped_dual_sc"], clumped.mean(), 9)
+        self.assertAlmostEqual(values["squeezed_dual_sc"], squeezed.mean(), 9)
+        self.assertAlmostEqual(values["elsewhere_dual_sc"], clumped[~squeezed].mean(), 9)
 
     def blocks(self, name, *sets):
         (self.dir / "block.yaml").write_text(BLOCK)

@@ -1,12 +1,14 @@
 /* The pressure systems of the solvers that use conjugate gradients, as they stand in a step of
  * theirs, solved by others: LAPACK's Cholesky factors of the matrix written out and SUNDIALS' CG.
- * The linker lets __wrap_cg_solve see every call of cg_solve. */
+ * The linker lets __wrap_cg_solve_to see every call of cg_solve_to. */
 #include "../../analysis/reference/reference.h"
 #include "../../core/linear/cg.h"
 #include "twin_solvers.h"
 
-struct cg_result __real_cg_solve(struct cg *s, double tolerance, int max_iterations);
-struct cg_result __wrap_cg_solve(struct cg *s, double tolerance, int max_iterations);
+struct cg_result __real_cg_solve_to(struct cg *s, double tolerance, double excess,
+                                    int max_iterations);
+struct cg_result __wrap_cg_solve_to(struct cg *s, double tolerance, double excess,
+                                    int max_iterations);
 
 /* Row i is coupled to none: with b_i = 0 CG keeps x_i = 0 there, whatever other rows say */
 static int alone(const struct cg *s, int i)
@@ -71,11 +73,12 @@ static void let_go(void)
 }
 
 /* The first system only */
-struct cg_result __wrap_cg_solve(struct cg *s, double tolerance, int max_iterations)
+struct cg_result __wrap_cg_solve_to(struct cg *s, double tolerance, double excess,
+                                    int max_iterations)
 {
   const int first = caught.n == 0;
   if (first) take_matrix(s);
-  const struct cg_result result = __real_cg_solve(s, tolerance, max_iterations);
+  const struct cg_result result = __real_cg_solve_to(s, tolerance, excess, max_iterations);
   if (first) {
     caught.iterations = result.iterations;
     caught.tolerance = tolerance;
