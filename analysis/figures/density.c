@@ -75,8 +75,5 @@ static status treat(struct program *p, const struct figure_run *run)
 
 int main(int argc, char **argv)
 {
-  struct program p;
-  status result = program_begin(&p, argc, argv);
-  for (int k = 0; result == OK && k < p.n; k++) result = treat(&p, &p.run[k]);
-  return program_end(&p, result);
+  return program_each(argc, argv, treat);
 }

@@ -130,4 +130,14 @@ static inline int program_end(struct program *p, status result)
   if (result != OK) fprintf(stderr, "%s\n", status_sentence());
   return status_exit_code(result);
 }
+
+/* A program that treats one run after the other. */
+static inline int program_each(int argc, char **argv,
+                               status (*treat)(struct program *p, const struct figure_run *run))
+{
+  struct program p;
+  status result = program_begin(&p, argc, argv);
+  for (int k = 0; result == OK && k < p.n; k++) result = treat(&p, &p.run[k]);
+  return program_end(&p, result);
+}
 #endif

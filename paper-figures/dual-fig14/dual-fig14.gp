@@ -13,6 +13,6 @@ do for [k = 1:4] {
   set title sprintf('t = %.1f s', 0.2*k) offset 0,-0.6
   plot sprintf('dual-sc-%d-virtual.dat', k) using 1:2 \
     with points pt 7 ps 0.6*mark lc rgb '#e05030', \
-    sprintf('dual-sc-%d-real.dat', k) using 1:2 with points pt 7 ps 0.6*mark lc rgb '#000000'
+    sprintf('dual-sc-%d-real.dat', k) using 1:2 with points pt 7 ps 0.3*mark lc rgb '#000000'
 }
 unset multiplot

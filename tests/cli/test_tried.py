@@ -2,6 +2,7 @@
 floats with a corner down."""
 import importlib.machinery
 import importlib.util
+import json
 import math
 import shutil
 import statistics
@@ -45,7 +46,7 @@ class Findings(cli_case.Case):
     def setUp(self):
         super().setUp()
         for path in ("tools/findings", "tools/findings.json", "results/tried.json",
-                     "docs/findings.md"):
+                     "results/claims.json", "docs/findings.md"):
             (self.dir / path).parent.mkdir(exist_ok=True)
             shutil.copy(cli_case.ROOT / path, self.dir / path)
         shutil.copytree(cli_case.ROOT / "tests", self.dir / "tests")
@@ -62,6 +63,15 @@ class Findings(cli_case.Case):
         page = self.dir / "docs" / "findings.md"
         page.write_text(page.read_text().replace("does not hold", "holds", 1))
         self.assertEqual(self.check()[0], 1)
+
+    def test_a_claim_that_no_longer_holds_is_found(self):
+        claims = self.dir / "results" / "claims.json"
+        kept = json.loads(claims.read_text())
+        next(claim for claim in kept if claim["verdict"] == "holds")["verdict"] = "does not hold"
+        claims.write_text(json.dumps(kept))
+        self.assertEqual(self.check()[0], 1)
+        subprocess.run([sys.executable, self.dir / "tools" / "findings", "--page"], check=True)
+        self.assertEqual(self.check()[0], 0)
 
     def test_a_test_that_is_gone_is_found(self):
         (self.dir / "tests" / "law" / "test_tried.c").write_text("")
