@@ -9,7 +9,12 @@
  * <= theta_max = 2.1 .. 7.5 on a lattice (sph/lattice.h; supports of 2 to 3 dx), about a fifth more
  * on a disordered one. Beyond 2/theta_max an iteration diverges, unless clamp = each, which never
  * takes an overshoot back: with the paper's factor of 1 that works at theta_max < 3 and makes fluid
- * expand beyond. */
+ * expand beyond.
+ *
+ * divergence_solver: it keeps particles from approaching wherever they are, so that what a splash
+ * has spread does not close up again: after 2 s of the spinner (benchmarks/helmholtz-spinner.yaml,
+ * 1 ms) the fluid's volume has grown by 119 %, by 61 % without warm start, by 10 % without this
+ * solver (IISPH: 9 %). */
 #include "../core/solver.h"
 #include "../core/sph/lattice.h"
 #include <stdio.h>
