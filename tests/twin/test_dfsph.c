@@ -7,6 +7,7 @@ enum { CLAMPED, FREE, EACH };
 struct choices {
   int iterations, clamp;
   double warm, relaxation;
+  int dense;
 };
 
 static double alpha[TWIN_MOST], kappa[TWIN_MOST],
@@ -61,7 +62,8 @@ static double twin_total(const struct cloud *c, const struct choices *o, int i, 
                          int divergence)
 {
   const double theta = o->relaxation, predicted = c->rho[i] + c->dt * twin_rate(c, i);
-  const double ceiling = divergence ? c->rho[i] : c->rho0;
+  const double kept = o->dense ? fmax(c->rho[i], c->rho0) : c->rho[i];
+  const double ceiling = divergence ? kept : c->rho0;
   const double floor_ = divergence ? c->rho[i] : fmin(c->rho[i], c->rho0);
   const double up = total + theta * (predicted - ceiling) * alpha[i] / (c->dt * c->dt);
   const double down = total + theta * (predicted - floor_) * alpha[i] / (c->dt * c->dt);
@@ -120,8 +122,13 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 {
   static struct cloud run, twin;
   const struct setting settings[] = {
-    {"fixed_iterations", o.iterations}, {"clamp", o.clamp},          {"relaxation", o.relaxation},
-    {"warm_density", o.warm},           {"warm_divergence", o.warm}, {NULL, 0},
+    {"fixed_iterations", o.iterations},
+    {"clamp", o.clamp},
+    {"relaxation", o.relaxation},
+    {"warm_density", o.warm},
+    {"warm_divergence", o.warm},
+    {"divergence_of", o.dense},
+    {NULL, 0},
   };
   cloud_make(&run, SIDE, walls, kernel, 11 + (unsigned long long)walls);
   run.xsph = (double)(real)xsph;
@@ -136,41 +143,47 @@ static void compare(int walls, int kernel, double xsph, int steps, struct choice
 static void test_free_fluid(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, 0, 0.375});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, 0, 0.375, 0});
 }
 static void test_walls(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){3, CLAMPED, 1, 0.375});
+  compare(1, KERNEL_WENDLAND2, 0, 1, (struct choices){3, CLAMPED, 1, 0.375, 0});
 }
 static void test_unclamped(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){4, FREE, 1, 0.25});
+  compare(1, KERNEL_CUBIC, 0, 1, (struct choices){4, FREE, 1, 0.25, 0});
 }
 static void test_warm_start(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_SPIKY, 0, 3, (struct choices){2, CLAMPED, 1, 0.375});
-  compare(0, KERNEL_CUBIC, 0, 3, (struct choices){2, FREE, 1, 0.375});
+  compare(1, KERNEL_SPIKY, 0, 3, (struct choices){2, CLAMPED, 1, 0.375, 0});
+  compare(0, KERNEL_CUBIC, 0, 3, (struct choices){2, FREE, 1, 0.375, 0});
+}
+static void test_divergence_of_the_dense(void **unused)
+{
+  (void)unused;
+  compare(1, KERNEL_CUBIC, 0, 2, (struct choices){3, CLAMPED, 1, 0.375, 1});
+  compare(0, KERNEL_SPIKY, 0, 2, (struct choices){3, FREE, 1, 0.25, 1});
 }
 static void test_two_fluids(void **unused)
 {
   (void)unused;
   mixed = 1;
-  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, 1, 0.375});
-  compare(1, KERNEL_WENDLAND2, 0, 2, (struct choices){3, FREE, 1, 0.25});
+  compare(0, KERNEL_CUBIC, 0, 1, (struct choices){3, CLAMPED, 1, 0.375, 0});
+  compare(1, KERNEL_WENDLAND2, 0, 2, (struct choices){3, FREE, 1, 0.25, 0});
   mixed = 0;
 }
 static void test_clamp_of_each_iteration(void **unused)
 {
   (void)unused;
-  compare(1, KERNEL_CUBIC, 0, 2, (struct choices){3, EACH, 0.5, 1});
+  compare(1, KERNEL_CUBIC, 0, 2, (struct choices){3, EACH, 0.5, 1, 0});
 }
 static void test_viscosity(void **unused)
 {
   (void)unused;
-  compare(0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){2, CLAMPED, 1, 0.5});
+  compare(0, KERNEL_WENDLAND4, 0.05, 2, (struct choices){2, CLAMPED, 1, 0.5, 0});
 }
 
 /* The projection is Alg. 2 alone, and p = rho kappa^v. */
@@ -178,7 +191,7 @@ static void test_projection(void **unused)
 {
   (void)unused;
   static struct cloud run, twin;
-  const struct choices o = {5, FREE, 1, 0.375};
+  const struct choices o = {5, FREE, 1, 0.375, 0};
   const struct setting settings[] = {
     {"fixed_iterations", 5}, {"clamp", FREE}, {"relaxation", 0.375}, {NULL, 0}};
   cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 5);
@@ -202,7 +215,7 @@ static void test_default_relaxation(void **unused)
   cloud_make(&run, SIDE, 0, KERNEL_CUBIC, 9);
   twin = run;
   const struct choices o = {2, CLAMPED, 1,
-                            (double)(real)(1.4 / lattice_stiffest(&run.kernel, run.dx))};
+                            (double)(real)(1.4 / lattice_stiffest(&run.kernel, run.dx)), 0};
   cloud_run(&run, &solver_dfsph, by_default, 1);
   twin_start(&twin);
   twin_step(&twin, &o);
@@ -267,6 +280,7 @@ int main(void)
     cmocka_unit_test(test_walls),
     cmocka_unit_test(test_unclamped),
     cmocka_unit_test(test_warm_start),
+    cmocka_unit_test(test_divergence_of_the_dense),
     cmocka_unit_test(test_two_fluids),
     cmocka_unit_test(test_clamp_of_each_iteration),
     cmocka_unit_test(test_viscosity),
