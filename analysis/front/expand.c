@@ -44,22 +44,22 @@ status solver_names(struct names *names)
   return names->n ? OK : status_set(ERR_IO, "'%s' lists no solvers", executable.text);
 }
 
-status solver_number(const struct names *all, const char *name, int *number)
-{
-  for (*number = 1; *number <= all->n; ++*number)
-    if (strcmp(all->name[*number - 1], name) == 0) return OK;
-  const char *near = nearest_name(name, (const char *const *)all->name, all->n);
-  return near
-           ? user_error("--solvers: unknown solver '%s'; the nearest known one is '%s'", name, near)
-           : user_error("--solvers: unknown solver '%s'; 'sphbench list solvers' lists them", name);
-}
-
 /* Number of a solver, from 1; 0: unknown. */
 static int number_of(const struct names *solvers, const char *name)
 {
   for (int k = 0; k < solvers->n; k++)
     if (strcmp(solvers->name[k], name) == 0) return k + 1;
   return 0;
+}
+
+status solver_number(const struct names *all, const char *name, int *number)
+{
+  *number = number_of(all, name);
+  if (*number) return OK;
+  const char *near = nearest_name(name, (const char *const *)all->name, all->n);
+  return near
+           ? user_error("--solvers: unknown solver '%s'; the nearest known one is '%s'", name, near)
+           : user_error("--solvers: unknown solver '%s'; 'sphbench list solvers' lists them", name);
 }
 
 static struct run_request request_of(const struct recipe_runs *runs)

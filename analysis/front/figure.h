@@ -12,10 +12,10 @@ status solver_names(struct names *names);
 /* The number, from 1, of a solver that --solvers names. ERR_USER, with the nearest known name. */
 status solver_number(const struct names *all, const char *name, int *number);
 
-/* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
 /* Line types of style.gp: a solver has that of its number, its other forms those beyond. */
 enum { MOST_COLOURS = 20 };
 
+/* One curve or one row of frames: a run, or with a varied parameter one point of a curve. */
 struct figure_case {
   int run;     /* in the queue */
   int colour;  /* number of the solver, from 1; MOST_COLOURS more for each label of its runs */

@@ -135,7 +135,6 @@ static json_t *provenance(const struct provenance *p)
   return object;
 }
 
-/* The keys in the order in which a person wants to read them. */
 static json_t *solves(const struct run_facts *f)
 {
   json_t *object = json_object();
@@ -149,6 +148,7 @@ static json_t *solves(const struct run_facts *f)
   return object;
 }
 
+/* The keys in the order in which a person wants to read them. */
 static json_t *whole(const struct run_facts *f)
 {
   json_t *object =

@@ -94,9 +94,10 @@ struct cg_result cg_solve_to(struct cg *s, double tolerance, double excess, int 
     return result;
   }
   sweep_over(residual, s, s->n);
+  sum_over(norm_r, s, s->n, &rr);
   sum_over(r_dot_z, s, s->n, &rz);
-  result.converged = 0;
-  while (result.iterations < max_iterations && !result.converged) {
+  int done = 0;
+  while (!done && result.iterations < max_iterations) {
     sum_over(apply, s, s->n, &dq);
     if (!(dq > 0)) break; /* the residual is zero, or the matrix is not positive definite */
     s->step = (real)(rz / dq);
@@ -106,10 +107,9 @@ struct cg_result cg_solve_to(struct cg *s, double tolerance, double excess, int 
     s->beta = (real)(rz / rz_before);
     sweep_over(turn, s, s->n);
     result.iterations++;
-    result.converged = reached(s, rr, tolerance * tolerance * bb, excess);
+    done = reached(s, rr, tolerance * tolerance * bb, excess);
   }
-  sum_over(norm_r, s, s->n, &rr);
   result.residual = sqrt(rr / bb);
-  result.converged = reached(s, rr, tolerance * tolerance * bb, excess);
+  result.converged = done || reached(s, rr, tolerance * tolerance * bb, excess);
   return result;
 }
