@@ -3,6 +3,7 @@
 #ifndef ERRORS_H
 #define ERRORS_H
 #include <stdlib.h>
+#include "../core/base/sorted.h"
 #include "../core/benchmark.h"
 
 /* Sums of the squares of an error and of the truth that it is relative to. */
@@ -48,12 +49,6 @@ struct norms {
   double l1, l2, p999, most;
 };
 
-static inline int by_size(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* error [n], is sorted: lengths of the errors; truth [n]: of the truth. */
 static inline struct norms norms_of(double *error, const double *truth, int n)
 {
@@ -68,7 +63,7 @@ static inline struct norms norms_of(double *error, const double *truth, int n)
   }
   struct norms found = {(double)NAN, squares_ratio(&s), (double)NAN, (double)NAN};
   if (!(largest > 0)) return found;
-  qsort(error, (size_t)n, sizeof *error, by_size);
+  sort_numbers(error, n);
   found.l1 = sum / sum_truth;
   found.p999 = error[(int)(0.999 * (n - 1))] / largest;
   found.most = error[n - 1] / largest;

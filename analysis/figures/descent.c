@@ -17,6 +17,7 @@
  * With the argument `functions` also B_0, B_1, B_2 and their slopes, Eqs. (15) - (17). Values: the
  * iterations and the time at which a curve passes 0.1, 0.01 and 0.001, what its last iterate
  * leaves. He et al. 2025, Comput. Graph. Forum, Sec. 4.3, Figs. 5 and 6. */
+#include "../../core/base/sorted.h"
 #include "lambda.h"
 
 enum { MOST = 64 };
@@ -169,14 +170,9 @@ static double passing(const struct curve *c, double least, double level, int of_
   return (double)NAN;
 }
 
-static int by_size(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 static double median(double *values, int n)
 {
-  qsort(values, (size_t)n, sizeof *values, by_size);
+  sort_numbers(values, n);
   return n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 

@@ -5,6 +5,7 @@
 #include <sys/sysinfo.h>
 #include <unistd.h>
 
+#include "../../core/base/sorted.h"
 #include "../../core/base/clock.h"
 #include "../../core/io/provenance.h"
 #include "arguments.h"
@@ -84,12 +85,6 @@ static void print_machine(void)
            load[0] > 0.5 ? ": times measured now are not to be trusted" : "");
 }
 
-static int ascending(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* About a millisecond of work that the compiler cannot leave out. */
 static double equal_work(void)
 {
@@ -110,7 +105,7 @@ static void print_clock(void)
     if (then - now < step) step = then - now;
   }
   for (int k = 0; k < TIMES; k++) took[k] = equal_work();
-  qsort(took, TIMES, sizeof *took, ascending);
+  sort_numbers(took, TIMES);
   const double median = took[TIMES / 2];
   printf("clock:\n  %-12s %.0f ns\n", "resolution", 1e9 * step);
   printf("  %-12s %.1f %% between quartiles, slowest %.0f %% over the median of %d equal pieces of "

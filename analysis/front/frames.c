@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../../core/base/sorted.h"
 #include "../../core/io/result_read.h"
 #include "arguments.h"
 #include "figure.h"
@@ -159,16 +160,10 @@ static status write_walls(struct frames *f)
   return result;
 }
 
-static int ascending(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return x < y ? -1 : x > y;
-}
-
 /* What 99 % of all particles at all times lie in: one that flew off shall not hide the others. */
 static void colour_range(struct frames *f, double *low, double *high)
 {
-  qsort(f->value, (size_t)f->num_values, sizeof(double), ascending);
+  sort_numbers(f->value, (int)f->num_values);
   const long cut = f->num_values / 200;
   *low = f->colour->from_zero || f->num_values == 0 ? 0 : f->value[cut];
   *high = f->num_values ? f->value[f->num_values - 1 - cut] : 1;

@@ -4,6 +4,7 @@
  * The reference is the same step solved as far as it goes, so neither the truth of the scene nor
  * the size of the step is in these errors. It is the first step: there is nothing to start warm
  * from. */
+#include "../../core/base/sorted.h"
 #include "iterations.h"
 
 #include <stdlib.h>
@@ -42,18 +43,12 @@ static status parse(struct typed *t, int argc, char **argv)
   return arguments_sets(argc, argv, t->ask.set, MOST_SETS, &t->ask.num_sets);
 }
 
-static int ascending(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static status take_counts(const char *text, struct values *count)
 {
   const double most = 1000000; /* what solvers allow */
   *count = (struct values){.value = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48}, .n = 11};
   TRY(values_parse("--iterations", text, count));
-  qsort(count->value, (size_t)count->n, sizeof *count->value, ascending);
+  sort_numbers(count->value, count->n);
   for (int k = 0; k < count->n; k++)
     if (count->value[k] != floor(count->value[k]) || count->value[k] > most ||
         (k && count->value[k] == count->value[k - 1]))

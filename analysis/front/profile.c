@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../core/base/sorted.h"
 #include "arguments.h"
 #include "figure.h"
 #include "front.h"
@@ -140,12 +141,6 @@ static status gather(struct profiles *p)
 
 /* --- where a profile rises --- */
 
-static int ascending(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The costs of all, or their ratios to the least of each problem, sorted: where any profile may
  * rise. Returns their number. */
 static int steps_of(const struct profile *profile, int ratios, double *steps)
@@ -158,7 +153,7 @@ static int steps_of(const struct profile *profile, int ratios, double *steps)
     for (int s = 0; s < profile->solvers; s++)
       if (isfinite(cost[s])) steps[n++] = ratios ? cost[s] / best : cost[s];
   }
-  qsort(steps, (size_t)n, sizeof *steps, ascending);
+  sort_numbers(steps, n);
   return n;
 }
 

@@ -1,13 +1,8 @@
 #include "statistics.h"
+#include "../../core/base/sorted.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static int ascending(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 /* P(B <= k) of B ~ binomial(n, 1/2) */
 static double binomial_half(int k, int n)
@@ -24,7 +19,7 @@ static double binomial_half(int k, int n)
 struct interval interval_of_median(double *values, int n)
 {
   int k = 1;
-  qsort(values, (size_t)n, sizeof *values, ascending);
+  sort_numbers(values, n);
   while (2 * (k + 1) <= n && 1 - 2 * binomial_half(k, n) >= 0.95) k++;
   const double coverage = 1 - 2 * binomial_half(k - 1, n);
   return (struct interval){.median = (values[(n - 1) / 2] + values[n / 2]) / 2,
@@ -86,7 +81,7 @@ double noise_floor(const double *a, const double *b, int n)
   int found = 0;
   for (int k = 0; factor && k < n; k++)
     if (a[k] > 0 && b[k] > 0) factor[found++] = fmax(a[k] / b[k], b[k] / a[k]);
-  if (found > 0) qsort(factor, (size_t)found, sizeof *factor, ascending);
+  if (found > 0) sort_numbers(factor, found);
   const double floor = found > 0 ? factor[(int)ceil(0.95 * found) - 1] : 1;
   free(factor);
   return floor;
